@@ -32,7 +32,7 @@ struct External {};
 /// A constant or table over time, or set from outside.
 using Drive = std::variant<Table, External>;
 
-/// Moves a frame: its pose over time, piecewise linear in `rotate` and `translate`; replaces `Frame::pose`.
+/// Moves a frame: piecewise linear in `rotate` and `translate`, applied in the world after `Frame::pose`.
 struct FrameMotion {
   std::vector<double> times;    ///< [s], strictly increasing
   std::vector<Vec3> rotate;     ///< [rad], empty (none turned) or one per time
@@ -42,7 +42,7 @@ struct FrameMotion {
 /// A named frame that solids and rods can be attached to; it moves them with it.
 struct Frame {
   Pose pose;                          ///< at rest
-  std::optional<FrameMotion> motion;  ///< applied after `pose`, in the world
+  std::optional<FrameMotion> motion;  ///< none: it stands still
 };
 
 /// Where coordinates are given: in the object's own frame before its pose, or in the world.

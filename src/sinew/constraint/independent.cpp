@@ -1,0 +1,29 @@
+#include "sinew/constraint/independent.hpp"
+
+namespace sinew::constraint {
+
+std::vector<int> independent_rows(Eigen::MatrixXd gram, double tolerance, int first) {
+  const Eigen::Index n = gram.rows();
+  const Eigen::VectorXd length2 = gram.diagonal();
+  std::vector<bool> used(static_cast<std::size_t>(n), false);
+  std::vector<int> kept;
+  for (Eigen::Index step = 0; step < n; ++step) {
+    Eigen::Index pivot = -1;
+    if (step == 0 && first >= 0) {
+      pivot = first;
+    } else {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (used[static_cast<std::size_t>(i)] || !(gram(i, i) > tolerance * tolerance * length2[i])) continue;
+        if (pivot < 0 || gram(i, i) > gram(pivot, pivot) * (1.0 + 1e-9)) pivot = i;
+      }
+    }
+    if (pivot < 0 || !(gram(pivot, pivot) > 0.0)) break;
+    used[static_cast<std::size_t>(pivot)] = true;
+    kept.push_back(static_cast<int>(pivot));
+    const Eigen::VectorXd column = gram.col(pivot);
+    gram -= column * column.transpose() / column[pivot];
+  }
+  return kept;
+}
+
+}  // namespace sinew::constraint

@@ -1,0 +1,125 @@
+#include "sinew/sim/free_motion.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "sinew/sim/clock.hpp"
+
+namespace sinew {
+
+StepContext make_context(const Model& model, const State& start, const Command& command, double h) {
+  StepContext context{model, start, h, command, {}, {}, {}};
+  for (const auto& [name, frame] : model.scene.frames)
+    context.displacement.push_back(frame_displacement(frame, start.time + h));
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const SolidState& state = start.solids[i];
+    context.solids.push_back({state.x, state.v, solid::rotations(model.solids[i].body, state.x), h});
+  }
+  for (const RodModel& rod : model.rods) context.bases.push_back(compose(context.moved(rod.frame), rod.base));
+  return context;
+}
+
+SolidForces solid_forces(const StepContext& context, const State& iterate, int number) {
+  const solid::Body& body = context.model.solids[number].body;
+  SolidForces forces;
+  Eigen::Matrix3Xd r = solid::residual(body, context.solids[number], iterate.solids[number].x,
+                                       context.model.scene.gravity, &forces.scale);
+  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
+    const PointModel& point = context.model.points[k];
+    if (point.solid != number || !iterate.points[k].on) continue;
+    for (int c = 0; c < 4; ++c) {
+      r.col(body.tetrahedra[point.where.element][c]) -=
+          point.where.weights[c] * iterate.points[k].lambda;  // + H^T lambda
+    }
+  }
+  forces.r.resize(3 * body.free_nodes);
+  for (int i = 0; i < body.nodes(); ++i) {
+    if (body.unknown[i] < 0) continue;
+    forces.r.segment<3>(3 * body.unknown[i]) = r.col(i);
+    forces.largest = std::max(forces.largest, r.col(i).norm());
+  }
+  return forces;
+}
+
+namespace {
+
+/// A of (10), straight into the values of the sparse lower triangle.
+void assemble(const StepContext& context, const SolidModel& model, const solid::StepStart& start,
+              const Eigen::Matrix3Xd& x, solid::Tangent kind, linalg::SparseCholesky::Matrix& A) {
+  double* values = A.valuePtr();
+  std::fill(values, values + A.nonZeros(), 0.0);
+  solid::assemble_tangent(model.body, start, x, kind, [&](int e, int a, int b, const solid::Mat3& block) {
+    const std::array<int, 9>& at = model.block[16 * e + 4 * a + b];
+    for (int i = 0; i < 9; ++i) {
+      if (at[i] >= 0) values[at[i]] += block(i % 3, i / 3);
+    }
+  });
+  const Eigen::VectorXd mass = solid::mass_diagonal(model.body, context.h);
+  for (int i = 0; i < model.body.nodes(); ++i) {
+    if (model.body.unknown[i] < 0) continue;
+    for (int c = 0; c < 3; ++c) values[model.diagonal[3 * model.body.unknown[i] + c]] += mass[i];
+  }
+}
+
+}  // namespace
+
+FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate,
+                       const SolidForces& forces, int number, solid::Tangent kind, StageTimes& times) {
+  const SolidModel& model = context.model.solids[number];
+  Workspace::Solid& memory = workspace.solids[number];
+  const auto factor = [&](solid::Tangent tangent) {
+    {
+      const Clock clock(times.assembly);
+      assemble(context, model, context.solids[number], iterate.solids[number].x, tangent, memory.matrix);
+    }
+    const Clock clock(times.factor);
+    return memory.cholesky.factor(memory.matrix);
+  };
+  FreeMotion free;
+  free.ok = factor(kind);
+  if (!free.ok && kind == solid::Tangent::exact) {
+    free.rotated = true;
+    free.ok = factor(solid::Tangent::rotated);
+  }
+  if (!free.ok) return free;
+
+  const Clock clock(times.compliance);
+  free.stiffness = memory.matrix.diagonal().maxCoeff();
+  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
+    if (context.model.points[k].solid == number) free.points.push_back(static_cast<int>(k));
+  }
+  const auto columns = static_cast<Eigen::Index>(3 * free.points.size());
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(forces.r.size(), columns + 1);
+  right.col(columns) = -forces.r;
+  for (std::size_t k = 0; k < free.points.size(); ++k) {
+    const PointModel& point = context.model.points[free.points[k]];
+    if (!iterate.points[free.points[k]].on) continue;
+    for (int c = 0; c < 4; ++c) {
+      const int node = model.body.unknown[model.body.tetrahedra[point.where.element][c]];
+      if (node < 0) continue;
+      for (int i = 0; i < 3; ++i) right(3 * node + i, static_cast<Eigen::Index>(3 * k) + i) = point.where.weights[c];
+    }
+  }
+  Eigen::MatrixXd half = memory.cholesky.half_solve(right);
+  free.y = half.col(columns);
+  free.X = half.leftCols(columns);
+  return free;
+}
+
+Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
+                                  int number, const Eigen::VectorXd& dlambda) {
+  const solid::Body& body = context.model.solids[number].body;
+  Eigen::VectorXd y = free.y;
+  for (std::size_t k = 0; k < free.points.size(); ++k) {
+    y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
+         dlambda.segment<3>(context.model.points[free.points[k]].row);
+  }
+  const Eigen::VectorXd dx = workspace.solids[number].cholesky.back_solve(y);
+  Eigen::Matrix3Xd motion = Eigen::Matrix3Xd::Zero(3, body.nodes());
+  for (int i = 0; i < body.nodes(); ++i) {
+    if (body.unknown[i] >= 0) motion.col(i) = dx.segment<3>(3 * body.unknown[i]);
+  }
+  return motion;
+}
+
+}  // namespace sinew

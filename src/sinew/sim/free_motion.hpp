@@ -1,0 +1,47 @@
+// (10): how a volume moves in a step when the multipliers keep their values, and what one more newton would change.
+#pragma once
+
+#include "sinew/sim/step.hpp"
+
+namespace sinew {
+
+/// Where a step starts from and what is prescribed at its end; the same for all its iterations.
+struct StepContext {
+  const Model& model;
+  const State& start;
+  double h = 0.0;
+  Command command;                      ///< at the end of the step
+  std::vector<Placement> displacement;  ///< of each frame, at the end of the step
+  std::vector<solid::StepStart> solids;
+  std::vector<Placement> bases;  ///< of each rod, at the end of the step
+
+  Placement moved(int frame) const { return frame < 0 ? Placement{} : displacement[frame]; }
+};
+StepContext make_context(const Model& model, const State& start, const Command& command, double h);
+
+/// Unbalanced force of one volume at an iterate, multipliers included.
+struct SolidForces {
+  Eigen::VectorXd r;     ///< 3 x free nodes, [N]: left minus right side of (7)
+  double largest = 0.0;  ///< [N] largest at a node
+  double scale = 0.0;    ///< [N] largest single contribution at a node
+};
+SolidForces solid_forces(const StepContext& context, const State& iterate, int solid);
+
+/// The volume's linear response, A dx = -r + H^T dlambda, half solved:
+///     y = -L^-1 P r,   X = L^-1 P H^T   so that   H dx = X^T y + X^T X dlambda,   dx = P^T L^-T (y + X dlambda).
+struct FreeMotion {
+  Eigen::VectorXd y;
+  Eigen::MatrixXd X;        ///< three columns per point on this volume, in the order of `points`
+  std::vector<int> points;  ///< numbers of the points
+  double stiffness = 0.0;   ///< [N/m] largest diagonal entry of A
+  bool rotated = false;
+  bool ok = false;
+};
+FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate,
+                       const SolidForces& forces, int solid, solid::Tangent kind, StageTimes& times);
+
+/// Correction: 3 x nodes displacement of the volume (zero at clamped nodes) once the multipliers' increments are known.
+Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
+                                  int solid, const Eigen::VectorXd& dlambda);
+
+}  // namespace sinew

@@ -1,0 +1,45 @@
+#include "sinew/sim/run.hpp"
+
+#include <cmath>
+
+namespace sinew {
+
+StepResult advance(const Model& model, Workspace& workspace, const State& state) {
+  const double h = model.scene.time.step;
+  const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
+  const bool on_grid = state.time == from;
+  const double whole = on_grid ? h : to - state.time;
+  StepResult result;
+  // Half steps are fractions of the grid's, whatever is left of it after earlier ones.
+  for (int halvings = 0; halvings <= kHalvings; ++halvings) {
+    const double part = std::ldexp(h, -halvings);
+    if (part > whole * (1.0 + 1e-9)) continue;  // already tried, from further back
+    const bool lands = part >= whole * (1.0 - 1e-9);
+    const double time = lands ? to : state.time + part;
+    result = step(model, workspace, command_at(model, time), state, lands ? whole : part);
+    if (!accepted(result.report.status)) continue;
+    result.next.time = time;
+    if (lands) ++result.next.grid;
+    return result;
+  }
+  return result;
+}
+
+long grid_steps(const Scene& scene) { return std::lround(scene.time.duration / scene.time.step); }
+
+RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure) {
+  Workspace workspace = make_workspace(model);
+  const long steps = grid_steps(model.scene);
+  while (state.grid < steps) {
+    StepResult result = advance(model, workspace, state);
+    if (!accepted(result.report.status)) {
+      if (failure) *failure = result.report;
+      return RunEnd::stopped;
+    }
+    state = std::move(result.next);
+    if (!on_step(state, result.report)) return RunEnd::interrupted;
+  }
+  return RunEnd::done;
+}
+
+}  // namespace sinew

@@ -1,0 +1,28 @@
+// A run: steps along the scene's time grid, halved where they do not converge.
+#pragma once
+
+#include <functional>
+
+#include "sinew/sim/step.hpp"
+
+namespace sinew {
+
+/// A step that does not converge is tried again with half the time, this many times at most.
+constexpr int kHalvings = 5;
+
+/// One accepted step towards the next point of the time grid, halved as often as needed: the only thing that decides
+/// how far is the state, so a run continued from a recorded state makes the same steps. On failure `next` is `state`.
+StepResult advance(const Model& model, Workspace& workspace, const State& state);
+
+/// Steps of the whole grid: duration / step, rounded to the nearest whole one.
+long grid_steps(const Scene& scene);
+
+enum class RunEnd { done, stopped, interrupted };
+
+/// Takes every accepted state; returns false to interrupt the run.
+using OnStep = std::function<bool(const State&, const StepReport&)>;
+
+/// Steps from `state` to the end of the scene's duration. `failure` receives the report of the step that stopped it.
+RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure = nullptr);
+
+}  // namespace sinew

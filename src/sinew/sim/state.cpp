@@ -1,0 +1,87 @@
+#include "sinew/sim/state.hpp"
+
+#include <stdexcept>
+
+#include "sinew/rod/kinematics.hpp"
+
+namespace sinew {
+
+State initial_state(const Model& model) {
+  State state;
+  for (const SolidModel& solid : model.solids) {
+    state.solids.push_back({solid.body.rest, Eigen::Matrix3Xd::Zero(3, solid.body.nodes())});
+  }
+  for (const RodModel& rod : model.rods) {
+    RodState& own = state.rods.emplace_back();
+    if (rod.geometric) {
+      own.q = Eigen::VectorXd::Zero(rod.cable.coordinates());
+    } else {
+      own.q = rod::rest_coordinates(rod.rod);
+      const auto shape = rod::configure(rod.rod, rod.base, own.q);
+      const auto count = static_cast<Eigen::Index>(rod.rod.masses.size());
+      own.masses.resize(3, count);
+      for (Eigen::Index i = 0; i < count; ++i)
+        own.masses.col(i) = rod::position(shape, rod.rod.masses[i].s, rod.rod.masses[i].offset);
+      own.velocity.setZero(3, count);
+    }
+    state.tensions.push_back(0.0);
+  }
+  for (const PointModel& point : model.points) {
+    state.points.push_back({point.abscissa, true, Vec3::Zero()});
+    if (point.cable_point >= 0) {
+      const SolidModel& solid = model.solids[point.solid];
+      state.rods[point.rod].q.segment<3>(1 + 3 * point.cable_point) =
+          solid::position(point.where, solid.body.tetrahedra, solid.body.rest);
+    }
+  }
+  state.actuators.assign(model.actuators.size(), 0.0);
+  return state;
+}
+
+namespace {
+
+/// Visits every number of a state in the order of the record; sizes are the model's.
+template <class StateType, class Visit>
+void each_number(StateType& state, const Visit& visit) {
+  visit(state.time);
+  const auto array = [&visit](auto& values) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) visit(values.data()[i]);
+  };
+  for (auto& solid : state.solids) {
+    array(solid.x);
+    array(solid.v);
+  }
+  for (auto& rod : state.rods) {
+    array(rod.q);
+    array(rod.masses);
+    array(rod.velocity);
+  }
+  for (auto& point : state.points) {
+    visit(point.s);
+    array(point.lambda);
+  }
+  for (auto& value : state.actuators) visit(value);
+  for (auto& value : state.tensions) visit(value);
+}
+
+}  // namespace
+
+std::vector<double> pack(const State& state) {
+  std::vector<double> numbers{static_cast<double>(state.grid)};
+  for (const PointState& point : state.points) numbers.push_back(point.on ? 1.0 : 0.0);
+  each_number(state, [&numbers](double value) { numbers.push_back(value); });
+  return numbers;
+}
+
+State unpack(const Model& model, const std::vector<double>& numbers) {
+  State state = initial_state(model);
+  if (numbers.size() != pack(state).size())
+    throw std::invalid_argument("the recorded state does not belong to this model");
+  std::size_t at = 0;
+  state.grid = static_cast<long>(numbers[at++]);
+  for (PointState& point : state.points) point.on = numbers[at++] != 0.0;
+  each_number(state, [&](double& value) { value = numbers[at++]; });
+  return state;
+}
+
+}  // namespace sinew

@@ -1,0 +1,49 @@
+#include "sinew/sim/status.hpp"
+
+namespace sinew {
+
+std::string_view to_string(Status status) {
+  switch (status) {
+    case Status::rest:
+      return "rest";
+    case Status::converged:
+      return "converged";
+    case Status::linearized:
+      return "linearized";
+    case Status::max_iterations:
+      return "max_iterations";
+    case Status::singular:
+      return "singular";
+    case Status::diverged:
+      return "diverged";
+    case Status::rod_exhausted:
+      return "rod_exhausted";
+  }
+  return "unknown";
+}
+
+std::string_view explain(Status status) {
+  switch (status) {
+    case Status::rest:
+      return "This is the initial state.";
+    case Status::converged:
+      return "The step met its tolerance.";
+    case Status::linearized:
+      return "The step made the number of linearisations asked for; its residual says how far that is from "
+             "equilibrium.";
+    case Status::max_iterations:
+      return "Newton did not reach its tolerance. Try a smaller time step, a slower motion, or more stiffness damping "
+             "(rayleigh).";
+    case Status::singular:
+      return "A matrix could not be factored: the body has collapsed or nothing holds a motion. Look at the last "
+             "picture; try a smaller step.";
+    case Status::diverged:
+      return "Numbers grew without bound. Try a smaller time step or a slower motion.";
+    case Status::rod_exhausted:
+      return "The base end of a rod reached a sliding point. Let the rod start further outside the body, or pull less "
+             "the other way.";
+  }
+  return "";
+}
+
+}  // namespace sinew

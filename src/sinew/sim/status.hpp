@@ -1,0 +1,27 @@
+// How a step ended. Failure is data: a step never throws on numbers and never returns a state with NaN.
+#pragma once
+
+#include <string_view>
+
+namespace sinew {
+
+enum class Status {
+  rest,            ///< the initial state
+  converged,       ///< Newton met its tolerance
+  linearized,      ///< the asked number of linearisations was made (newton: n)
+  max_iterations,  ///< Newton did not meet its tolerance within the limit
+  singular,        ///< a matrix could not be factored
+  diverged,        ///< numbers grew beyond what can be represented
+  rod_exhausted,   ///< the base end of a rod was drawn past a sliding point
+};
+
+constexpr bool accepted(Status status) {
+  return status == Status::rest || status == Status::converged || status == Status::linearized;
+}
+
+std::string_view to_string(Status status);
+
+/// What the status means and what to try, one sentence each, for people.
+std::string_view explain(Status status);
+
+}  // namespace sinew

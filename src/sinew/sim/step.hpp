@@ -1,0 +1,52 @@
+// One time step: backward Euler of (6) and (7) with their couplings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/status.hpp"
+
+namespace sinew {
+
+/// What the motors are told for the end of a step: one value per actuator, in the unit of what drives it (N, m, N m,
+/// rad).
+using Command = std::vector<double>;
+
+/// The values of all tables at a time; actuators driven from outside get 0.
+Command command_at(const Model& model, double time);
+
+/// Seconds spent, summed over the iterations of a step.
+struct StageTimes {
+  double forces = 0.0, assembly = 0.0, factor = 0.0, compliance = 0.0, rods = 0.0, solve = 0.0;
+};
+
+struct StepReport {
+  Status status = Status::rest;
+  int newton = 0;          ///< linearisations made
+  double residual = 0.0;   ///< largest unbalanced force over the largest force that acts anywhere
+  double violation = 0.0;  ///< [m] largest distance of a sliding point from its rod, or of a tip from its anchor
+  bool rotated = false;    ///< the exact tangent was not positive definite somewhere, the rotated one stood in
+  bool redundant = false;  ///< constraint rows depended on each other
+  std::string detail;      ///< names what failed, for people
+  StageTimes times;
+};
+
+/// Memory that steps reuse; holds no information between them. One per thread.
+struct Workspace {
+  struct Solid {
+    linalg::SparseCholesky cholesky;
+    linalg::SparseCholesky::Matrix matrix;
+  };
+  std::vector<Solid> solids;
+};
+Workspace make_workspace(const Model& model);
+
+/// Advances by h [s]. On failure `next` is the state it started from.
+struct StepResult {
+  State next;
+  StepReport report;
+};
+StepResult step(const Model& model, Workspace& workspace, const Command& command, const State& state, double h);
+
+}  // namespace sinew
