@@ -1,0 +1,16 @@
+// The readers behind parse_mesh, one per format. Each returns what the file says, unchecked beyond its syntax and its
+// references; `bytes` begin with the format's own first word.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "sinew/solid/mesh.hpp"
+
+namespace sinew::io {
+
+solid::Mesh parse_legacy_vtk(std::string_view bytes, const std::string& file);
+solid::Mesh parse_vtu(std::string_view bytes, const std::string& file);
+solid::Mesh parse_gmsh(std::string_view bytes, const std::string& file);
+
+}  // namespace sinew::io
