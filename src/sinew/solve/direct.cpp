@@ -45,7 +45,9 @@ CoupledSolution solve_direct(const CoupledProblem& problem) {
   Eigen::VectorXd y = lu.solve(b);
   if (y.allFinite()) y += lu.solve(b - K * y);
   solution.residual = y.allFinite() ? relative(y) : INFINITY;
-  if (!(lu.rcond() > 1e-14) || !(solution.residual < kTolerance)) {
+  const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
+  const bool singular = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff()) || !(lu.rcond() > 1e-15);
+  if (singular || !(solution.residual < kTolerance)) {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
     cod.setThreshold(1e-12);
     cod.compute(K);
@@ -53,7 +55,7 @@ CoupledSolution solve_direct(const CoupledProblem& problem) {
     solution.redundant = true;
     solution.residual = y.allFinite() ? relative(y) : INFINITY;
   }
-  solution.ok = solution.residual < (solution.redundant ? 1e-3 : kTolerance);
+  solution.ok = solution.residual < (solution.redundant ? 1e-6 : kTolerance);
   y.array() *= scale.array();
   solution.dz = y.head(nz);
   solution.dlambda = y.tail(nl);

@@ -1,0 +1,108 @@
+#include <fmt/core.h>
+
+#include "sinew/commands.hpp"
+#include "sinew/io/mesh_file.hpp"
+#include "sinew/loaded_scene.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/solid/mesh_summary.hpp"
+
+namespace sinew::app {
+
+namespace {
+
+std::string list_mm(const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size() && i < 12; ++i)
+    text += fmt::format("{}{:.4g}", i ? ", " : "", 1e3 * values[i]);
+  return text + (values.size() > 12 ? ", ..." : "") + " mm";
+}
+
+void print_solid(const SolidModel& solid) {
+  double volume = 0.0;
+  for (double v : solid.body.volumes) volume += v;
+  const Vec3 size = solid.body.rest.rowwise().maxCoeff() - solid.body.rest.rowwise().minCoeff();
+  fmt::print("solid {}: {} nodes, {} tetrahedra, {} nodes fixed, {} unknowns\n", solid.name, solid.body.nodes(),
+             solid.body.elements(), solid.body.nodes() - solid.body.free_nodes, 3 * solid.body.free_nodes);
+  fmt::print("  {:.4g} x {:.4g} x {:.4g} mm, {:.4g} cm^3, {:.4g} g ({:.4g} kg/m^3)\n", 1e3 * size.x(), 1e3 * size.y(),
+             1e3 * size.z(), 1e6 * volume, 1e3 * solid.body.masses.sum(), solid.body.masses.sum() / volume);
+}
+
+void print_rod(const RodModel& rod) {
+  if (rod.geometric) {
+    fmt::print("rod {}: a geometric cable of {:.5g} mm, without stiffness or mass\n", rod.name, 1e3 * rod.length());
+    return;
+  }
+  static const char* const names[] = {"torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"};
+  fmt::print("rod {}: {:.5g} mm, {} sections, {} coordinates\n", rod.name, 1e3 * rod.length(), rod.rod.sections(),
+             rod.rod.coordinates());
+  for (int strain : rod.rod.basis) {
+    fmt::print("  {:<10} stiffness {:.4g} {}\n", names[strain], rod.rod.stiffness[0][strain],
+               strain < 3 ? "N m^2" : "N");
+  }
+  double mass = 0.0;
+  for (const auto& point : rod.rod.masses) mass += point.mass;
+  fmt::print("  mass {:.4g} g{}\n", 1e3 * mass, mass > 0.0 ? "" : " (density 0: no inertia, no weight)");
+  if (rod.path_deviation > 1e-9 * rod.length())
+    fmt::print("  its sections stay within {:.3g} mm of the path\n", 1e3 * rod.path_deviation);
+}
+
+void print_coupling(const Model& model, std::size_t number) {
+  const CouplingFacts& facts = model.couplings[number];
+  const Slide& slide = model.scene.couplings[number];
+  fmt::print("coupling {}: rod {} in solid {}: {} of {} points kept\n", number, slide.rod, slide.solid, facts.kept,
+             facts.asked);
+  if (facts.outside > 0) {
+    fmt::print("  {} of them lie outside the mesh, up to {:.3g} mm, and are tied to the nearest element\n",
+               facts.outside, 1e3 * facts.farthest);
+  }
+  if (!facts.no_unknown.empty()) {
+    fmt::print("  dropped, nothing there can move: s = {}\n", list_mm(facts.no_unknown));
+  }
+  if (!facts.redundant.empty()) {
+    fmt::print("  dropped, the elements there already follow their other points: s = {}\n", list_mm(facts.redundant));
+  }
+}
+
+}  // namespace
+
+int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
+  const LoadedScene loaded = load(io::read_scene(scene, overrides));
+  const Model& model = loaded.model;
+  fmt::print("{}: {} steps of {:.4g} ms\n", scene.string(), grid_steps(model.scene), 1e3 * model.scene.time.step);
+  for (const SolidModel& solid : model.solids) print_solid(solid);
+  for (const RodModel& rod : model.rods) print_rod(rod);
+  for (std::size_t i = 0; i < model.couplings.size(); ++i) print_coupling(model, i);
+  for (const ActuatorModel& actuator : model.actuators) {
+    static const char* const names[] = {"force", "displacement", "torque", "angle"};
+    fmt::print("actuator {}: {} of rod {}, driven by {}{}\n", actuator.name,
+               actuator.motion == Motion::translation ? "translation" : "rotation", model.rods[actuator.rod].name,
+               names[static_cast<int>(actuator.driven)],
+               std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)" : "");
+  }
+  for (const std::string& warning : model.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print(
+      "The scene is sound: {} unknowns of rods and points, {} constraint rows. Run it with: sinew run {} -o out\n",
+      model.reduced, model.rows, scene.string());
+  return kDone;
+}
+
+int describe_mesh(const std::filesystem::path& path) {
+  const solid::Mesh mesh = io::read_mesh(path);
+  const solid::MeshSummary s = solid::summarize(mesh);
+  fmt::print("{}: {} nodes, {} tetrahedra\n", path.string(), s.nodes, s.tetrahedra);
+  for (const auto& [kind, count] : s.ignored) fmt::print("  {} cells of kind {} are not used\n", count, kind);
+  if (s.unused_nodes > 0) fmt::print("  {} nodes belong to no tetrahedron\n", s.unused_nodes);
+  fmt::print("  from [{:.6g}, {:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}], diagonal {:.6g} (units of the file)\n",
+             s.lower.x(), s.lower.y(), s.lower.z(), s.upper.x(), s.upper.y(), s.upper.z(), s.diagonal);
+  fmt::print("  volume {:.6g}; tetrahedra from {:.3g} to {:.3g}; worst shape {:.3g} of 1 (tetrahedron {})\n", s.volume,
+             s.smallest, s.largest, s.worst_quality, s.worst_tetrahedron);
+  if (s.diagonal > 10.0) fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
+  return kDone;
+}
+
+int print_schema() {
+  fmt::print("{}\n", io::scene_schema());
+  return kDone;
+}
+
+}  // namespace sinew::app

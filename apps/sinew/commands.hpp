@@ -1,0 +1,28 @@
+// The program's commands, one function each; they return the exit code and throw InputError on bad input.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace sinew::app {
+
+// Exit codes (NOTATION.md).
+inline constexpr int kDone = 0, kBadInput = 2, kNumericalStop = 3, kInterrupted = 130;
+
+struct RunOptions {
+  std::filesystem::path scene;
+  std::filesystem::path output = "out";
+  std::vector<std::string> overrides;
+  std::filesystem::path resume;
+  bool force = false;
+  bool quiet = false;
+};
+
+int run_scene(const RunOptions& options);
+int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+int describe_mesh(const std::filesystem::path& mesh);
+int export_run(const std::filesystem::path& folder);
+int print_schema();
+
+}  // namespace sinew::app

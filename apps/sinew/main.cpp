@@ -1,0 +1,82 @@
+// sinew: simulates soft robots from scene files.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "sinew/commands.hpp"
+#include "sinew/error/input_error.hpp"
+
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  sinew run examples/finger.yaml -o out/finger        simulate, write tables, ParaView files and a picture
+  sinew run finger.yaml -o out --set actuators.pull.displacement="5 mm" --set rods.cable.sections=30
+  sinew run --resume out/finger                       go on with a run that was stopped
+  sinew check finger.yaml                             what the engine makes of a scene; does not run it
+  sinew info finger.vtk                               sizes and quality of a mesh
+  sinew schema > sinew.schema.json                    JSON Schema of scene files, for editors
+
+Exit codes: 0 done, 2 bad input, 3 numerical stop (results kept), 130 interrupted (results kept).)";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Sinew simulates soft robots moved by cables, rods and tubes. All units are SI.", "sinew");
+  program.footer(kExamples);
+  program.set_version_flag("--version", "sinew " SINEW_VERSION);
+  program.require_subcommand(1);
+
+  sinew::app::RunOptions options;
+  CLI::App* run = program.add_subcommand("run", "Simulate a scene and write its results into a folder");
+  CLI::Option* scene = run->add_option("scene", options.scene, "Scene file (YAML)");
+  CLI::Option* output = run->add_option("-o,--output", options.output, "Folder for the results")->capture_default_str();
+  CLI::Option* set =
+      run->add_option("--set", options.overrides, "Change the scene: path=value, as in time.step=\"5 ms\"")
+          ->type_name("PATH=VALUE");
+  run->add_option("--resume", options.resume, "Go on with the run recorded in this folder")
+      ->excludes(scene)
+      ->excludes(output)
+      ->excludes(set);
+  run->add_flag("--force", options.force, "Replace the results of an earlier run in the folder");
+  run->add_flag("-q,--quiet", options.quiet, "No progress");
+
+  std::filesystem::path checked;
+  std::vector<std::string> check_overrides;
+  CLI::App* check = program.add_subcommand("check", "Read and build a scene and explain what came of it; does not run");
+  check->add_option("scene", checked, "Scene file (YAML)")->required();
+  check->add_option("--set", check_overrides, "Change the scene: path=value")->type_name("PATH=VALUE");
+
+  std::filesystem::path mesh;
+  CLI::App* info = program.add_subcommand("info", "Sizes and quality of a mesh (legacy VTK, VTU, Gmsh MSH)");
+  info->add_option("mesh", mesh, "Mesh file")->required();
+
+  std::filesystem::path recorded;
+  CLI::App* views =
+      program.add_subcommand("export", "Write tables, ParaView files and the picture again from a run's recording");
+  views->add_option("folder", recorded, "Folder of the run")->required();
+
+  CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of scene files");
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? sinew::app::kDone : sinew::app::kBadInput;
+  }
+  try {
+    if (*run) return sinew::app::run_scene(options);
+    if (*check) return sinew::app::check_scene(checked, check_overrides);
+    if (*info) return sinew::app::describe_mesh(mesh);
+    if (*views) return sinew::app::export_run(recorded);
+    if (*schema) return sinew::app::print_schema();
+  } catch (const sinew::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return sinew::app::kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sinew: {}\n", error.what());
+    return 1;
+  }
+  return sinew::app::kBadInput;
+}

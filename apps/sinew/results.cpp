@@ -1,0 +1,143 @@
+#include "sinew/results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "sinew/io/picture.hpp"
+#include "sinew/io/signals_csv.hpp"
+#include "sinew/io/vtu.hpp"
+#include "sinew/sim/signals.hpp"
+
+namespace sinew::app {
+
+using Json = nlohmann::ordered_json;
+
+std::filesystem::path recording_path(const std::filesystem::path& folder) { return folder / "run.sinew"; }
+
+io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report) {
+  return {state.time,
+          std::string(to_string(report.status)),
+          static_cast<std::uint32_t>(report.newton),
+          report.residual,
+          report.violation,
+          signal_values(model, state),
+          pack(state)};
+}
+
+namespace {
+
+/// Median and maximum of one stage over all steps [ms].
+Json stage_json(const std::vector<StageTimes>& times, double StageTimes::*stage) {
+  std::vector<double> values;
+  for (const StageTimes& time : times) values.push_back(1e3 * time.*stage);
+  std::sort(values.begin(), values.end());
+  return {{"median_ms", values[values.size() / 2]}, {"max_ms", values.back()}};
+}
+
+Json sizes_json(const Model& model) {
+  Json solids = Json::object(), rods = Json::object();
+  for (const SolidModel& solid : model.solids) {
+    solids[solid.name] = {
+        {"nodes", solid.body.nodes()}, {"tetrahedra", solid.body.elements()}, {"free_nodes", solid.body.free_nodes}};
+  }
+  for (const RodModel& rod : model.rods) {
+    rods[rod.name] = {{"length_m", rod.length()},
+                      {"sections", rod.geometric ? 0 : rod.rod.sections()},
+                      {"coordinates", rod.coordinates()}};
+  }
+  return {{"solids", solids},
+          {"rods", rods},
+          {"sliding_points", model.points.size()},
+          {"rows", model.rows},
+          {"reduced_unknowns", model.reduced}};
+}
+
+void write_report(const std::filesystem::path& path, const LoadedScene& loaded, const io::Recording& recording,
+                  const RunSummary& summary) {
+  Json report;
+  report["program"] = "sinew " + recording.header.program_version;
+  report["scene"] = recording.header.scene_name;
+  report["inputs_hash"] = recording.header.inputs_hash;
+  for (const auto& [name, hash] : loaded.inputs) report["inputs"].push_back({{"file", name}, {"xxh3_128", hash}});
+  report["sizes"] = sizes_json(loaded.model);
+  report["warnings"] = loaded.model.warnings;
+  report["end"] = {{"how", summary.end}, {"time_s", recording.steps.empty() ? 0.0 : recording.steps.back().time}};
+  if (summary.end == "numerical_stop") {
+    report["end"]["status"] = to_string(summary.failure.status);
+    report["end"]["where"] = summary.failure.detail;
+    report["end"]["newton"] = summary.failure.newton;
+    report["end"]["residual"] = summary.failure.residual;
+    report["end"]["violation_m"] = summary.failure.violation;
+    report["end"]["meaning"] = explain(summary.failure.status);
+  }
+  std::map<std::string, int> counts;
+  double residual = 0.0, violation = 0.0;
+  std::uint32_t newton = 0;
+  for (const io::RecordedStep& step : recording.steps) {
+    ++counts[step.status];
+    residual = std::max(residual, step.residual);
+    violation = std::max(violation, step.violation);
+    newton = std::max(newton, step.newton);
+  }
+  report["summary"] = {{"steps", counts},
+                       {"largest_newton", newton},
+                       {"largest_residual", residual},
+                       {"largest_violation_m", violation}};
+  if (!summary.times.empty()) {
+    report["time_per_step"] = {{"forces", stage_json(summary.times, &StageTimes::forces)},
+                               {"assembly", stage_json(summary.times, &StageTimes::assembly)},
+                               {"factor", stage_json(summary.times, &StageTimes::factor)},
+                               {"compliance", stage_json(summary.times, &StageTimes::compliance)},
+                               {"rods", stage_json(summary.times, &StageTimes::rods)},
+                               {"solve", stage_json(summary.times, &StageTimes::solve)}};
+  }
+  report["steps"] = Json::array();
+  for (const io::RecordedStep& step : recording.steps) {
+    report["steps"].push_back({{"time_s", step.time},
+                               {"status", step.status},
+                               {"newton", step.newton},
+                               {"residual", step.residual},
+                               {"violation_m", step.violation}});
+  }
+  std::ofstream(path) << report.dump(1) << "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> write_views(const std::filesystem::path& folder, const LoadedScene& loaded,
+                                     const io::Recording& recording, const RunSummary& summary) {
+  const Model& model = loaded.model;
+  io::write_signals_csv(folder / "signals.csv", recording);
+  write_report(folder / "report.json", loaded, recording, summary);
+
+  // About 100 frames a run, or one per `view.interval`; the last state always.
+  const std::size_t count = recording.steps.size();
+  std::size_t stride = std::max<std::size_t>(1, (count + 99) / 100);
+  if (model.scene.view.interval > 0.0)
+    stride = std::max<std::size_t>(
+        1, static_cast<std::size_t>(std::lround(model.scene.view.interval / model.scene.time.step)));
+  io::SeriesWriter series(folder / "paraview");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % stride != 0 && i + 1 != count) continue;
+    series.add(snapshot(model, unpack(model, recording.steps[i].state), recording.steps[i].status));
+  }
+  series.finish();
+
+  if (count > 0) {
+    io::PictureOptions options;
+    options.title = model.scene.title.empty() ? std::filesystem::path(recording.header.scene_name).stem().string()
+                                              : model.scene.title;
+    io::draw_picture(folder / "picture.png",
+                     snapshot(model, unpack(model, recording.steps.front().state), recording.steps.front().status),
+                     snapshot(model, unpack(model, recording.steps.back().state), recording.steps.back().status),
+                     options);
+  }
+  return {"picture.png        the end state", "signals.csv        outputs and motors over time",
+          "paraview/run.pvd   the motion, for ParaView", "report.json        sizes, status of every step, times",
+          "run.sinew          the recording, for --resume and export"};
+}
+
+}  // namespace sinew::app

@@ -1,0 +1,29 @@
+// The results folder: the recording, and the views that are made from it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sinew/io/recording.hpp"
+#include "sinew/loaded_scene.hpp"
+#include "sinew/sim/step.hpp"
+
+namespace sinew::app {
+
+/// How a run ended, for report.json and for people.
+struct RunSummary {
+  std::string end = "done";       ///< done, numerical_stop, interrupted, or unfinished (from a recording alone)
+  StepReport failure;             ///< if it stopped
+  std::vector<StageTimes> times;  ///< of each step made by this program; none for recorded ones
+};
+
+std::filesystem::path recording_path(const std::filesystem::path& folder);
+
+io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report);
+
+/// Writes signals.csv, the ParaView series, picture.png and report.json from a recording; returns the files' names.
+std::vector<std::string> write_views(const std::filesystem::path& folder, const LoadedScene& loaded,
+                                     const io::Recording& recording, const RunSummary& summary);
+
+}  // namespace sinew::app

@@ -1,0 +1,146 @@
+#include <fmt/core.h>
+
+#include <atomic>
+#include <csignal>
+
+#include "sinew/commands.hpp"
+#include "sinew/error/input_error.hpp"
+#include "sinew/progress.hpp"
+#include "sinew/results.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/signals.hpp"
+
+namespace sinew::app {
+
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+void on_signal(int) { interrupted = true; }
+
+std::string end_word(RunEnd end) {
+  switch (end) {
+    case RunEnd::done:
+      return "done";
+    case RunEnd::stopped:
+      return "numerical_stop";
+    case RunEnd::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+/// Steps from a state to the end, records them, writes the views, tells the user; returns the exit code.
+int run_and_record(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
+                   io::RecordingWriter writer, bool quiet) {
+  const Model& model = loaded.model;
+  const double duration = static_cast<double>(grid_steps(model.scene)) * model.scene.time.step;
+  Progress progress("sinew " + loaded.file.path.filename().string(), duration, quiet);
+  RunSummary summary;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  const RunEnd end = run(
+      model, start,
+      [&](const State& state, const StepReport& report) {
+        writer.append(recorded(model, state, report));
+        summary.times.push_back(report.times);
+        progress.update(state.time, fmt::format("t = {:.3f} s", state.time));
+        return !interrupted.load();
+      },
+      &summary.failure);
+  summary.end = end_word(end);
+
+  const io::Recording recording = io::read_recording(recording_path(folder));
+  progress.finish(fmt::format("{:.6g} s simulated, {} steps", recording.steps.back().time, recording.steps.size() - 1));
+  const std::vector<std::string> files = write_views(folder, loaded, recording, summary);
+  if (end == RunEnd::stopped) {
+    fmt::print(stderr, "Stopped at t = {:.6g} s: {}{}\n    {}\n", recording.steps.back().time,
+               to_string(summary.failure.status),
+               summary.failure.detail.empty() ? "" : " (" + summary.failure.detail + ")",
+               explain(summary.failure.status));
+  }
+  if (end == RunEnd::interrupted)
+    fmt::print(stderr, "Interrupted; go on with: sinew run --resume {}\n", folder.string());
+  if (!quiet) {
+    fmt::print("Results in {}/\n", folder.string());
+    for (const std::string& file : files) fmt::print("  {}\n", file);
+  }
+  return end == RunEnd::done ? kDone : end == RunEnd::stopped ? kNumericalStop : kInterrupted;
+}
+
+int resume(const RunOptions& options) {
+  const std::filesystem::path path = recording_path(options.resume);
+  const io::Recording recording = io::read_recording(path);
+  const LoadedScene loaded =
+      load(io::parse_scene(recording.header.scene_text, recording.header.scene_name, recording.header.scene_folder));
+  if (loaded.inputs_hash != recording.header.inputs_hash) {
+    throw InputError({path.string(), 0, "", "", "the scene's mesh files are not the ones this run was made with",
+                      "restore them in " + recording.header.scene_folder + ", or start a new run"});
+  }
+  if (recording.steps.empty())
+    throw InputError({path.string(), 0, "", "", "holds no finished step", "start the run again"});
+  State state;
+  try {
+    state = unpack(loaded.model, recording.steps.back().state);
+  } catch (const std::invalid_argument&) {
+    throw InputError({path.string(), 0, "", "", "holds states of another version of the engine",
+                      "start the run again with this version"});
+  }
+  return run_and_record(loaded, state, options.resume, io::RecordingWriter::append_to(path), options.quiet);
+}
+
+}  // namespace
+
+int run_scene(const RunOptions& options) {
+  if (!options.resume.empty()) return resume(options);
+  if (options.scene.empty())
+    throw InputError({"", 0, "", "", "no scene was given", "sinew run SCENE -o FOLDER, or sinew run --resume FOLDER"});
+  LoadedScene loaded = load(io::read_scene(options.scene, options.overrides));
+  const std::filesystem::path path = recording_path(options.output);
+  if (std::filesystem::exists(path) && !options.force) {
+    throw InputError(
+        {options.output.string(), 0, "", "", "already holds the results of a run",
+         "give another folder with -o, replace them with --force, or go on with --resume " + options.output.string()});
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(options.output, failed);
+  if (failed)
+    throw InputError({options.output.string(), 0, "", "", "the folder cannot be made: " + failed.message(),
+                      "give another one with -o"});
+
+  const State start = initial_state(loaded.model);
+  io::RecordingHeader header;
+  header.program_version = SINEW_VERSION;
+  header.scene_text = loaded.file.text;
+  header.scene_name = loaded.file.path.filename().string();
+  header.scene_folder = std::filesystem::absolute(loaded.model.scene.folder).lexically_normal().string();
+  header.inputs_hash = loaded.inputs_hash;
+  header.state_size = pack(start).size();
+  header.signal_names = signal_names(loaded.model);
+  io::RecordingWriter writer = io::RecordingWriter::create(path, header);
+  writer.append(recorded(loaded.model, start, StepReport{}));
+  for (const std::string& warning : loaded.model.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  return run_and_record(loaded, start, options.output, std::move(writer), options.quiet);
+}
+
+int export_run(const std::filesystem::path& folder) {
+  const io::Recording recording = io::read_recording(recording_path(folder));
+  const LoadedScene loaded =
+      load(io::parse_scene(recording.header.scene_text, recording.header.scene_name, recording.header.scene_folder));
+  if (loaded.inputs_hash != recording.header.inputs_hash ||
+      recording.header.state_size != pack(initial_state(loaded.model)).size()) {
+    throw InputError({recording_path(folder).string(), 0, "", "",
+                      "the scene's mesh files are not the ones this run was made with",
+                      "restore them in " + recording.header.scene_folder});
+  }
+  RunSummary summary;
+  const bool whole =
+      !recording.steps.empty() && recording.steps.back().time >= loaded.model.scene.time.duration * (1.0 - 1e-9);
+  summary.end = whole ? "done" : "unfinished";
+  fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "",
+             recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);
+  for (const std::string& file : write_views(folder, loaded, recording, summary)) fmt::print("  {}\n", file);
+  return kDone;
+}
+
+}  // namespace sinew::app

@@ -1,0 +1,212 @@
+// One declaration for each key of a file: from it come both the reader, with its messages, and the JSON Schema.
+//
+// `Type<V>` reads a V from the tree and describes its JSON; `Field<T>` ties a key to a place in the struct T;
+// `Object<T>` is the list of its fields plus rules between them. scene_fields.cpp is written in these words.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "sinew/io/document.hpp"
+#include "sinew/io/units.hpp"
+
+namespace sinew::io {
+
+using Json = nlohmann::ordered_json;
+
+enum class Need { required, optional };
+
+/// A key and what a user has to know about it.
+struct Key {
+  std::string name;
+  Need need = Need::required;
+  std::string doc;      ///< "Young's modulus [Pa]"
+  std::string example;  ///< YAML, "600 kPa"
+};
+
+/// "`young` is Young's modulus [Pa]; for example `young: 600 kPa`"
+std::string help(const Key& key);
+
+/// A value in the document, with the way to it; whoever finds a fault in it refuses it here.
+class At {
+ public:
+  At(const Node& node, std::string file) : node_(&node), file_(std::move(file)), line_(node.line) {}
+
+  const Node& node() const { return *node_; }
+  const std::string& path() const { return path_; }
+  bool is(Node::Kind kind) const { return node_->kind == kind; }
+
+  At item(std::size_t index) const;        ///< of a list
+  bool has(const std::string& key) const;  ///< of a map
+  At child(const std::string& key) const;  ///< of a map that has it
+  At entry(std::size_t index) const;       ///< of a map
+  At child(const Key& key) const;          ///< and remembers its doc and example for messages
+
+  /// Throws InputError; without a remedy, the doc and example of the key are one.
+  [[noreturn]] void refuse(std::string rule, std::string remedy = "") const;
+  /// The same about a key of this map, known or not, at the line of that key if it stands there.
+  [[noreturn]] void refuse_key(const std::string& key, std::string rule, std::string remedy = "") const;
+
+ private:
+  const Node* node_;
+  std::string file_;
+  std::string path_;
+  int line_ = 0;
+  std::shared_ptr<const Key> key_;
+};
+
+template <class V>
+struct Type {
+  std::function<V(const At&)> read;
+  std::function<Json()> schema;
+  std::function<Json(const V&)> show = nullptr;  ///< a default value in the schema; none if not set
+};
+
+template <class T>
+struct Field {
+  Key key;
+  std::function<void(T&, const At&)> store;
+  std::function<Json()> schema;
+};
+
+/// `access` (member pointer or callable) names what the value is stored in: a V or an optional V.
+template <class T, class Access, class V>
+Field<T> field(Key key, Access access, Type<V> type) {
+  const auto store = [=](T& object, const At& at) { std::invoke(access, object) = type.read(at); };
+  const auto schema = [=] {
+    Json json = type.schema();
+    using Target = std::remove_cvref_t<std::invoke_result_t<Access, T&>>;
+    if constexpr (std::is_same_v<Target, V>) {
+      T fresh;
+      if (key.need == Need::optional && type.show) json["default"] = type.show(std::invoke(access, fresh));
+    }
+    return json;
+  };
+  return {key, store, schema};
+}
+
+/// A condition between the keys of one object, for the reader and for the schema.
+struct Rule {
+  std::function<void(const At&, const std::vector<Key>&)> check;
+  Json schema;
+};
+
+Rule exactly_one(std::vector<std::string> keys);
+/// `key` may only be given together with `other`.
+Rule needs(std::string key, std::string other);
+/// If `key` is given, `other` is absent or says `word`.
+Rule only_with(std::string key, std::string other, std::string word);
+/// `wanted` must be given unless `key` says `word`.
+Rule wanted_unless(std::string key, std::string word, std::vector<std::string> wanted);
+
+template <class T>
+struct Object {
+  std::string what;  ///< "a solid", for messages
+  std::vector<Field<T>> fields;
+  std::vector<Rule> rules = {};
+  std::function<void(const T&, const At&)> check = nullptr;  ///< on the finished object
+};
+
+/// Refuses what is not a map, unknown keys (the nearest known one is suggested), missing keys and broken rules.
+void check_keys(const At& at, const std::string& what, const std::vector<Key>& keys, const std::vector<Rule>& rules);
+Json object_schema(const std::vector<Key>& keys, const std::vector<Json>& values, const std::vector<Rule>& rules);
+
+template <class T>
+Type<T> map(Object<T> object) {
+  std::vector<Key> keys;
+  for (const Field<T>& f : object.fields) keys.push_back(f.key);
+  const auto read = [=](const At& at) {
+    check_keys(at, object.what, keys, object.rules);
+    T value;
+    for (const Field<T>& f : object.fields) {
+      if (at.has(f.key.name)) f.store(value, at.child(f.key));
+    }
+    if (object.check) object.check(value, at);
+    return value;
+  };
+  const auto schema = [=] {
+    std::vector<Json> values;
+    for (const Field<T>& f : object.fields) values.push_back(f.schema());
+    return object_schema(keys, values, object.rules);
+  };
+  return {read, schema};
+}
+
+/// How many elements a list may have.
+struct Count {
+  std::size_t least = 1;
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+};
+
+void check_list(const At& at, const std::string& what, Count count);
+Json list_schema(const Json& item, Count count);
+
+template <class V>
+Type<std::vector<V>> list(std::string what, Type<V> item, Count count,
+                          std::function<void(const std::vector<V>&, const At&)> check = nullptr) {
+  const auto read = [=](const At& at) {
+    check_list(at, what, count);
+    std::vector<V> values;
+    for (std::size_t i = 0; i < at.node().items.size(); ++i) values.push_back(item.read(at.item(i)));
+    if (check) check(values, at);
+    return values;
+  };
+  return {read, [=] { return list_schema(item.schema(), count); }};
+}
+
+void check_name(const At& map, const std::string& name);
+Json named_schema(const Json& value);
+
+/// A map from names the user chooses to values, in the order of the file.
+template <class V>
+Type<std::vector<std::pair<std::string, V>>> named(std::string what, Type<V> type) {
+  const auto read = [=](const At& at) {
+    std::vector<std::pair<std::string, V>> values;
+    if (!at.is(Node::Kind::map)) at.refuse("must be a map from the name of " + what + " to what it is");
+    for (std::size_t i = 0; i < at.node().entries.size(); ++i) {
+      const std::string& name = at.node().entries[i].key;
+      check_name(at, name);
+      values.emplace_back(name, type.read(at.entry(i)));
+    }
+    return values;
+  };
+  return {read, [=] { return named_schema(type.schema()); }};
+}
+
+/// Limits of a number, each with what to do about it.
+struct Range {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool above = false;       ///< lower itself is refused
+  bool below = false;       ///< upper itself is refused
+  std::string where = "";   ///< appended to the rule: " in a solid"
+  std::string remedy = "";  ///< for a value beyond upper
+};
+
+Type<double> quantity(Dimension dimension, Range range = {});
+Type<int> whole_number(int lower, int upper);
+Type<std::string> text();
+
+/// One of a few words. Their order is that of the enumeration.
+Type<int> word(std::vector<std::string> words);
+template <class E>
+Type<E> word_of(std::vector<std::string> words) {
+  const Type<int> type = word(std::move(words));
+  return {[=](const At& at) { return static_cast<E>(type.read(at)); }, type.schema,
+          [=](const E& value) { return type.show(static_cast<int>(value)); }};
+}
+
+/// Definitions that the schema of a quantity refers to.
+Json quantity_definitions();
+
+/// JSON that validates if one of these does.
+Json any_of(std::vector<Json> schemas);
+
+}  // namespace sinew::io

@@ -1,0 +1,277 @@
+#include "sinew/io/picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sinew/io/picture_page.hpp"
+#include "sinew/io/picture_raster.hpp"
+#include "sinew/io/picture_shapes.hpp"
+#include "sinew/io/readable.hpp"
+
+namespace sinew::io {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+
+constexpr Area kScene{80, 155, 1340, 825};     ///< robots are fitted into this
+constexpr Area kLabels{40, 118, 1380, 862};    ///< names stay in this
+constexpr Area kLegend{1436, 230, 1464, 760};  ///< the bar
+
+template <class Object>
+const Object* named(const std::vector<Object>& objects, const std::string& name) {
+  for (const Object& object : objects)
+    if (object.name == name) return &object;
+  return nullptr;
+}
+
+void draw_rest_rod(const Page& page, const RodSnapshot& rod, const PictureView& view) {
+  cairo_t* cairo = page.cairo();
+  const double dashes[] = {7, 7};
+  cairo_set_dash(cairo, dashes, 2, 0);
+  page.color(kGrey, 0.6);
+  cairo_set_line_width(cairo, 1.6);
+  bool started = false;
+  for (Eigen::Index i = 0; i < rod.points.cols(); ++i) {
+    if (!drawable(rod.points.col(i))) continue;
+    const Vec3 place = view.project(rod.points.col(i));
+    started ? cairo_line_to(cairo, place.x(), place.y()) : cairo_move_to(cairo, place.x(), place.y());
+    started = true;
+  }
+  cairo_stroke(cairo);
+  cairo_set_dash(cairo, nullptr, 0, 0);
+}
+
+// ---- marks -------------------------------------------------------------------------------------------------------
+
+void draw_sliding_points(const Page& page, const std::vector<MarkSnapshot>& marks, const PictureView& view) {
+  std::vector<Vec2> places;
+  for (const MarkSnapshot& mark : marks)
+    if (drawable(mark.position)) places.push_back(view.project(mark.position).head<2>());
+  double gap = INFINITY;  // the usual one between neighbours
+  if (places.size() > 1) {
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < places.size(); ++i) gaps.push_back((places[i] - places[i - 1]).norm());
+    std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
+    gap = gaps[gaps.size() / 2];
+  }
+  const double radius = std::clamp(0.3 * gap, 2.0, 4.5);
+  for (const Vec2& place : places) page.disc(place, radius, kWhite, std::min(1.6, 0.5 * radius), kInk);
+}
+
+void draw_output_sign(const Page& page, const Vec2& place) {
+  page.disc(place, 8.0, kWhite, 2.4, kInk);
+  page.disc(place, 3.6, rgb(0xd0104c));
+}
+
+/// The way of an output from its old place, dashed.
+void draw_way(const Page& page, const Vec2& from, const Vec2& to) {
+  if ((to - from).norm() < 14.0) return;
+  const double dashes[] = {1, 7};
+  cairo_set_dash(page.cairo(), dashes, 2, 0);
+  page.line(from, to, 3.0, rgb(0xd0104c));
+  cairo_set_dash(page.cairo(), nullptr, 0, 0);
+  page.disc(from, 4.5, kWhite, 1.8, rgb(0xd0104c));
+}
+
+void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureView& view) {
+  struct Label {
+    Vec2 place;
+    std::string text;
+  };
+  std::vector<Label> labels;
+  std::vector<Area> taken;
+  for (const MarkSnapshot& output : end.outputs) {
+    if (!drawable(output.position)) continue;
+    const Vec2 place = view.project(output.position).head<2>();
+    const MarkSnapshot* before = named(rest.outputs, output.name);
+    std::string text = page.fitted(printable(output.name), {.size = 20, .bold = true}, 300);
+    if (before != nullptr && drawable(before->position)) {
+      const double way = (output.position - before->position).norm();
+      const double roundoff = 1e-12 * std::max(output.position.norm(), before->position.norm());
+      text += "  " + readable_length(way > roundoff ? way : 0.0);
+      const Vec2 from = view.project(before->position).head<2>();
+      draw_way(page, from, place);
+      taken.push_back({from.x() - 6, from.y() - 6, from.x() + 6, from.y() + 6});
+    }
+    taken.push_back({place.x() - 11, place.y() - 11, place.x() + 11, place.y() + 11});
+    labels.push_back({place, text});
+  }
+  for (const Label& label : labels) draw_output_sign(page, label.place);
+  for (const Label& label : labels) {
+    const TextStyle style{.size = 20, .bold = true};
+    const Vec2 size(page.text_width(label.text, style) + 20, 34);
+    Area room;
+    if (!find_room(page, label.place, size, kLabels, taken, &room)) continue;  // (crowded: the sign alone)
+    taken.push_back(room);
+    const Vec2 near(std::clamp(label.place.x(), room.left, room.right),
+                    std::clamp(label.place.y(), room.top, room.bottom));
+    const Vec2 gap = near - label.place;
+    if (gap.norm() > 16.0) page.line(label.place + 9.5 * gap.normalized(), near, 1.4, kInk);
+    page.color(kWhite, 0.88);
+    cairo_rectangle(page.cairo(), room.left, room.top, size.x(), size.y());
+    cairo_fill(page.cairo());
+    page.text(room.left + 10, room.bottom - 10, label.text, style);
+  }
+}
+
+// ---- the frame around --------------------------------------------------------------------------------------------
+
+void draw_header(const Page& page, const Snapshot& end, const PictureOptions& options) {
+  const TextStyle head{.size = 34, .bold = true};
+  page.text(60, 66, page.fitted(printable(options.title), head, 1480), head);
+  const TextStyle plain{.size = 20, .color = kGrey};
+  std::string time = std::isfinite(end.time) ? fmt::format("t = {:.6g} s", end.time) : "t unknown";
+  page.text(60, 104, time, plain);
+  std::string status = printable(end.status);
+  std::replace(status.begin(), status.end(), '_', ' ');
+  if (status.empty()) return;
+  const double x = 60 + page.text_width(time, plain) + 20;
+  const bool good = end.status == "converged";
+  page.disc({x + 6, 97}, 6, good ? rgb(0x1b8a5a) : kWarning);
+  const TextStyle style{.size = 20, .color = good ? kGrey : kWarning, .bold = !good};
+  page.text(x + 22, 104, page.fitted(status, style, 1000), style);
+}
+
+/// What the signs mean, from right to left along the foot.
+void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool rods_orange) {
+  const TextStyle style{.size = 18, .color = kInk, .bold = false, .align = 1.0};
+  double right = 1540;
+  constexpr double kBase = 936;
+  const auto entry = [&](const std::string& text, double room, const auto& sign) {
+    page.text(right, kBase, text, style);
+    const double left = right - page.text_width(text, style) - room;
+    sign(left);
+    right = left - 34;
+  };
+  if (!end.outputs.empty())
+    entry(rest.outputs.empty() ? "output" : "output and its travel", 24, [&](double x) {
+      draw_output_sign(page, {x + 8, kBase - 6});
+    });
+  if (!end.sliding_points.empty())
+    entry("sliding point", 18, [&](double x) { page.disc({x + 5, kBase - 6}, 4.5, kWhite, 1.6, kInk); });
+  if (!end.rods.empty() && rods_orange)
+    entry("rod", 42, [&](double x) { page.line({x + 3, kBase - 6}, {x + 31, kBase - 6}, 5.0, kRod); });
+  if (!end.solids.empty()) {
+    entry("at rest", 40, [&](double x) {
+      cairo_rectangle(page.cairo(), x, kBase - 16, 30, 19);
+      page.color(kGrey, 0.16);
+      cairo_fill_preserve(page.cairo());
+      page.color(kGrey, 0.6);
+      cairo_set_line_width(page.cairo(), 1.5);
+      cairo_stroke(page.cairo());
+    });
+  } else if (!rest.rods.empty()) {
+    entry("at rest", 42, [&](double x) {
+      const double dashes[] = {7, 7};
+      cairo_set_dash(page.cairo(), dashes, 2, 0);
+      page.line({x, kBase - 6}, {x + 32, kBase - 6}, 1.6, kGrey);
+      cairo_set_dash(page.cairo(), nullptr, 0, 0);
+    });
+  }
+}
+
+/// Everything that must be seen.
+std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end) {
+  std::vector<Sight> sights;
+  for (const SolidSnapshot& solid : end.solids) {
+    for (const Eigen::Matrix3Xd* nodes : {&solid.rest, &solid.nodes}) {
+      std::vector<bool> seen(static_cast<std::size_t>(nodes->cols()), false);
+      for (const solid::Triangle& face : solid.surface)
+        for (const int node : face)
+          if (drawable(*nodes, node)) seen[static_cast<std::size_t>(node)] = true;
+      for (std::size_t i = 0; i < seen.size(); ++i)
+        if (seen[i]) sights.push_back({nodes->col(static_cast<Eigen::Index>(i)), 0.0});
+    }
+  }
+  for (const Snapshot* snapshot : {&rest, &end}) {
+    for (const RodSnapshot& rod : snapshot->rods) {
+      const double radius = std::isfinite(rod.radius) && rod.radius > 0.0 && rod.radius < 1e30 ? rod.radius : 0.0;
+      for (Eigen::Index i = 0; i < rod.points.cols(); ++i) sights.push_back({rod.points.col(i), radius});
+    }
+    for (const auto* marks : {&snapshot->outputs, &snapshot->sliding_points})
+      for (const MarkSnapshot& mark : *marks) sights.push_back({mark.position, 0.0});
+  }
+  std::erase_if(sights, [](const Sight& sight) { return !drawable(sight.point); });
+  return sights;
+}
+
+/// Part of the page that these take, with room for lines.
+Area area_of(const std::vector<Sight>& sights, const PictureView& view) {
+  Area area{kScene.right, kScene.bottom, kScene.left, kScene.top};
+  for (const Sight& sight : sights) {
+    const Vec3 place = view.project(sight.point);
+    const double reach = std::max(kThinnestRod, sight.radius * view.scale) + 4.0;
+    area.left = std::min(area.left, place.x() - reach);
+    area.right = std::max(area.right, place.x() + reach);
+    area.top = std::min(area.top, place.y() - reach);
+    area.bottom = std::max(area.bottom, place.y() + reach);
+  }
+  return {std::max(0.0, area.left), std::max(0.0, area.top), std::min<double>(kPictureWidth, area.right),
+          std::min<double>(kPictureHeight, area.bottom)};
+}
+
+}  // namespace
+
+PictureView picture_view(const Snapshot& rest, const Snapshot& end, const PictureOptions& options) {
+  return choose_view(sights_of(rest, end), options.up, kScene);
+}
+
+void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const Snapshot& end,
+                  const PictureOptions& options) {
+  const std::vector<Sight> sights = sights_of(rest, end);
+  const PictureView view = choose_view(sights, options.up, kScene);
+  const Area area = area_of(sights, view);
+  const bool rods_orange = !end.solids.empty();
+
+  std::vector<std::vector<double>> on_solids;
+  std::vector<Eigen::VectorXd> on_rods;
+  std::vector<double> all;
+  for (const SolidSnapshot& solid : end.solids) {
+    on_solids.push_back(surface_values(solid, options.color));
+    all.insert(all.end(), on_solids.back().begin(), on_solids.back().end());
+  }
+  for (const RodSnapshot& rod : end.rods) {
+    on_rods.push_back(rods_orange ? Eigen::VectorXd(Eigen::VectorXd::Zero(rod.points.cols()))
+                                  : rod_values(rod, named(rest.rods, rod.name), options.color));
+    if (!rods_orange) all.insert(all.end(), on_rods.back().begin(), on_rods.back().end());
+  }
+  const Scale scale = scale_of(all, options.color);
+
+  const Page page(kPictureWidth, kPictureHeight);
+  draw_header(page, end, options);
+  if (!sights.empty()) {
+    {
+      Raster ghost(area, plain_palette(kGrey));
+      for (const SolidSnapshot& solid : end.solids) add_surface(ghost, solid.rest, solid, {}, scale, view, 0.0);
+      ghost.paint(page.cairo(), {.fill = 0.14, .line = 0.6, .width = 1.0, .line_color = kGrey});
+    }
+    if (!rods_orange)
+      for (const RodSnapshot& rod : rest.rods) draw_rest_rod(page, rod, view);
+    const Palette palette = scale.largest > 0.0 ? viridis_palette() : plain_palette(kUnmoved);
+    Raster bodies(area, palette), rods(area, rods_orange ? plain_palette(kRod) : palette);
+    const double edge = edge_strength(end.solids, view);
+    for (std::size_t i = 0; i < end.solids.size(); ++i)
+      add_surface(bodies, end.solids[i].nodes, end.solids[i], on_solids[i], scale, view, edge);
+    for (std::size_t i = 0; i < end.rods.size(); ++i) add_tube(rods, end.rods[i], on_rods[i], scale, view);
+    rods.paint(page.cairo(), {.width = 0.0});
+    bodies.paint(page.cairo(), {.fill = 0.78, .line = 0.9, .width = 1.2});
+    rods.paint(page.cairo(), {.width = 0.0, .before = &bodies, .hidden = 0.45});
+    draw_sliding_points(page, end.sliding_points, view);
+    draw_outputs(page, rest, end, view);
+    draw_triad(page, view, {120, 905});
+    draw_scale_bar(page, view, 230, 940);
+  }
+  draw_key(page, rest, end, rods_orange);
+  if (!all.empty()) {
+    const bool stress = options.color == PictureColor::von_mises;
+    draw_legend(page, kLegend, stress ? "von Mises" : "displacement", scale.largest,
+                stress ? stress_unit(scale.largest) : length_unit(scale.largest), scale.open);
+  }
+  page.save(png);
+}
+
+}  // namespace sinew::io

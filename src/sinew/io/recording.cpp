@@ -1,0 +1,279 @@
+#include "sinew/io/recording.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <istream>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "sinew/error/input_error.hpp"
+
+namespace sinew::io {
+namespace {
+
+constexpr std::string_view kMagic("\x89SINEW\r\n", 8);
+constexpr std::size_t kPreamble = 16;  ///< magic, version, reserved
+constexpr std::size_t kFrame = 16;     ///< check and size before each payload
+
+template <class Number>
+Number little(Number value) {
+  if constexpr (std::endian::native == std::endian::little) return value;
+  Number swapped = 0;
+  for (std::size_t i = 0; i < sizeof(Number); ++i) {
+    swapped = static_cast<Number>(swapped << 8 | (value & 0xff));
+    value = static_cast<Number>(value >> 8);
+  }
+  return swapped;
+}
+
+/// Bytes in the making; the number types of the layout and no others.
+class Encoder {
+ public:
+  void u32(std::uint32_t value) { raw(little(value)); }
+  void u64(std::uint64_t value) { raw(little(value)); }
+  void f64(double value) { u64(std::bit_cast<std::uint64_t>(value)); }
+  void string(std::string_view text) {
+    u64(text.size());
+    bytes_.append(text);
+  }
+  void doubles(const std::vector<double>& values) {
+    bytes_.reserve(bytes_.size() + 8 * values.size());
+    for (const double value : values) f64(value);
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  template <class Number>
+  void raw(Number value) {
+    char memory[sizeof(Number)];
+    std::memcpy(memory, &value, sizeof(Number));
+    bytes_.append(memory, sizeof(Number));
+  }
+  std::string bytes_;
+};
+
+/// Reads what an Encoder wrote. Every size is compared with what is left before anything is allocated; once something
+/// does not fit, all further values are zero or empty and `whole` is false.
+class Decoder {
+ public:
+  explicit Decoder(std::string_view bytes) : rest_(bytes) {}
+
+  std::uint32_t u32() { return raw<std::uint32_t>(); }
+  std::uint64_t u64() { return raw<std::uint64_t>(); }
+  double f64() { return std::bit_cast<double>(u64()); }
+  std::string string() {
+    const std::uint64_t size = u64();
+    return fits(size, 1) ? std::string(take(size)) : std::string();
+  }
+  std::vector<double> doubles(std::uint64_t count) {
+    std::vector<double> values;
+    if (!fits(count, 8)) return values;
+    values.reserve(count);
+    for (std::uint64_t i = 0; i < count; ++i) values.push_back(f64());
+    return values;
+  }
+  std::vector<std::string> strings(std::uint64_t count) {
+    std::vector<std::string> values;
+    if (!fits(count, 8)) return values;  // (each takes 8 bytes at least)
+    values.reserve(count);
+    for (std::uint64_t i = 0; i < count && fits_; ++i) values.push_back(string());
+    return values;
+  }
+  bool whole() const { return fits_ && rest_.empty(); }  ///< all read, nothing missing, nothing left
+
+ private:
+  bool fits(std::uint64_t count, std::uint64_t bytes_each) {
+    if (count > rest_.size() / bytes_each) fits_ = false;
+    return fits_;
+  }
+  std::string_view take(std::uint64_t size) {
+    const std::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return taken;
+  }
+  template <class Number>
+  Number raw() {
+    Number value = 0;
+    if (fits(sizeof(Number), 1)) std::memcpy(&value, take(sizeof(Number)).data(), sizeof(Number));
+    return little(value);
+  }
+  std::string_view rest_;
+  bool fits_ = true;
+};
+
+std::uint64_t check_of(std::string_view checked, std::uint64_t number) {
+  return XXH3_64bits_withSeed(checked.data(), checked.size(), number);
+}
+
+/// Record `number` with its frame.
+std::string framed(std::string_view payload, std::uint64_t number) {
+  Encoder checked;
+  checked.string(payload);  // (size and payload, as the frame has them)
+  Encoder check;
+  check.u64(check_of(checked.bytes(), number));
+  return check.bytes() + checked.bytes();
+}
+
+std::string encode(const RecordingHeader& header) {
+  Encoder out;
+  for (const std::string* text :
+       {&header.program_version, &header.scene_text, &header.scene_name, &header.scene_folder, &header.inputs_hash})
+    out.string(*text);
+  out.u64(header.state_size);
+  out.u64(header.signal_names.size());
+  for (const std::string& name : header.signal_names) out.string(name);
+  return out.bytes();
+}
+
+std::string encode(const RecordedStep& step) {
+  Encoder out;
+  out.f64(step.time);
+  out.string(step.status);
+  out.u32(step.newton);
+  out.f64(step.residual);
+  out.f64(step.violation);
+  out.doubles(step.signals);
+  out.doubles(step.state);
+  return out.bytes();
+}
+
+std::optional<RecordingHeader> decode_header(std::string_view payload) {
+  Decoder in(payload);
+  RecordingHeader header;
+  for (std::string* text :
+       {&header.program_version, &header.scene_text, &header.scene_name, &header.scene_folder, &header.inputs_hash})
+    *text = in.string();
+  header.state_size = in.u64();
+  header.signal_names = in.strings(in.u64());
+  if (!in.whole()) return std::nullopt;
+  return header;
+}
+
+std::optional<RecordedStep> decode_step(std::string_view payload, const RecordingHeader& header) {
+  Decoder in(payload);
+  RecordedStep step;
+  step.time = in.f64();
+  step.status = in.string();
+  step.newton = in.u32();
+  step.residual = in.f64();
+  step.violation = in.f64();
+  step.signals = in.doubles(header.signal_names.size());
+  step.state = in.doubles(header.state_size);
+  if (!in.whole()) return std::nullopt;
+  return step;
+}
+
+/// Takes framed records off a stream of known length, one by one.
+class RecordReader {
+ public:
+  RecordReader(std::istream& stream, std::uint64_t left) : stream_(stream), left_(left) {}
+
+  /// Payload of the next record, valid until the next call; nothing if it is torn or damaged.
+  std::optional<std::string_view> next() {
+    if (left_ < kFrame) return std::nullopt;
+    char check[8];
+    if (!stream_.read(check, 8)) return std::nullopt;
+    record_.resize(8);
+    if (!stream_.read(record_.data(), 8)) return std::nullopt;
+    left_ -= kFrame;
+    const std::uint64_t size = Decoder(record_).u64();
+    if (size > left_) return std::nullopt;
+    record_.resize(8 + size);
+    if (!stream_.read(record_.data() + 8, static_cast<std::streamsize>(size))) return std::nullopt;
+    left_ -= size;
+    if (check_of(record_, number_++) != Decoder({check, 8}).u64()) return std::nullopt;
+    return std::string_view(record_).substr(8);
+  }
+
+  std::uint64_t left() const { return left_; }  ///< [bytes] after the record read last
+
+ private:
+  std::istream& stream_;
+  std::uint64_t left_;
+  std::uint64_t number_ = 0;
+  std::string record_;
+};
+
+InputError refused(const std::string& file, std::string rule, std::string remedy) {
+  return InputError(
+      {.file = file, .line = 0, .path = "", .value = "", .rule = std::move(rule), .remedy = std::move(remedy)});
+}
+
+}  // namespace
+
+Recording read_recording(std::istream& stream, std::uint64_t size, const std::string& file) {
+  char preamble[kPreamble];
+  if (size < kPreamble || !stream.read(preamble, kPreamble) || std::string_view(preamble, 8) != kMagic)
+    throw refused(file, "is not a Sinew recording", "give the recording in the output folder of a run");
+  Decoder numbers({preamble + 8, 8});
+  const std::uint32_t version = numbers.u32();
+  if (version > kRecordingVersion)
+    throw refused(file,
+                  fmt::format("has recording format {}, and this program reads format {}", version, kRecordingVersion),
+                  "read it with the newer version of Sinew that wrote it");
+  if (version != kRecordingVersion || numbers.u32() != 0)
+    throw refused(file, "is damaged: there is no such recording format", "run the scene again");
+
+  Recording recording;
+  RecordReader records(stream, size - kPreamble);
+  const auto header_bytes = records.next();
+  auto header = header_bytes ? decode_header(*header_bytes) : std::nullopt;
+  if (!header) throw refused(file, "is damaged or breaks off before the first step", "run the scene again");
+  recording.header = std::move(*header);
+  for (;;) {
+    recording.valid_bytes = size - records.left();
+    if (records.left() == 0) return recording;
+    const auto bytes = records.next();
+    auto step = bytes ? decode_step(*bytes, recording.header) : std::nullopt;
+    if (!step) {
+      recording.torn = true;
+      return recording;
+    }
+    recording.steps.push_back(std::move(*step));
+  }
+}
+
+Recording read_recording(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  if (error) throw refused(path.string(), "cannot be read: " + error.message(), "");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw refused(path.string(), "cannot be read: " + std::generic_category().message(errno), "");
+  return read_recording(stream, size, path.string());
+}
+
+RecordingWriter RecordingWriter::create(const std::filesystem::path& path, const RecordingHeader& header) {
+  Encoder start;
+  start.u32(kRecordingVersion);
+  start.u32(0);
+  AppendFile file(path, AppendFile::Start::empty);
+  file.append(std::string(kMagic) + start.bytes() + framed(encode(header), 0));
+  return {std::move(file), header.state_size, header.signal_names.size(), 1};
+}
+
+RecordingWriter RecordingWriter::append_to(const std::filesystem::path& path) {
+  AppendFile file(path, AppendFile::Start::keep);  // (first, so that no other run writes while we read)
+  const Recording recording = read_recording(path);
+  if (recording.torn) file.truncate(recording.valid_bytes);
+  return {std::move(file), recording.header.state_size, recording.header.signal_names.size(),
+          recording.steps.size() + 1};
+}
+
+void RecordingWriter::append(const RecordedStep& step) {
+  if (step.signals.size() != signals_ || step.state.size() != state_size_)
+    throw std::invalid_argument(fmt::format("recorded step has {} signals and {} state entries, its header {} and {}",
+                                            step.signals.size(), step.state.size(), signals_, state_size_));
+  file_.append(framed(encode(step), records_));
+  ++records_;
+}
+
+}  // namespace sinew::io

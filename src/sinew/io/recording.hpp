@@ -1,0 +1,100 @@
+// The recording of a run: one file that only grows, holds every accepted step bit for bit and is readable up to the
+// last finished step whatever stopped the run. Tables, ParaView files, pictures and `--resume` are views of it.
+//
+// Bytes (all numbers little-endian; f64 is IEEE 754 binary64, its bits as they are):
+//
+//   file    magic     8 bytes  89 53 49 4e 45 57 0d 0a ("\x89SINEW\r\n": a text conversion destroys it)
+//           version   u32      1
+//           reserved  u32      0
+//           record 0           the header
+//           record 1, 2, ...   the steps, in order
+//
+//   record  check     u64      XXH3 64 of all that follows in the record, seeded with the number of the record
+//           size      u64      bytes of the payload
+//           payload
+//
+//   header  string program_version, scene_text, scene_name, scene_folder, inputs_hash
+//           u64 state_size, u64 number of signals, string each signal's name
+//   step    f64 time, string status, u32 newton, f64 residual, f64 violation, f64 each signal, f64 each state entry
+//   string  u64 bytes, then the bytes
+//
+// Nothing in it depends on the clock or the machine, so equal runs give equal files. A program of another `version`
+// refuses the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "sinew/io/append_file.hpp"
+
+namespace sinew::io {
+
+inline constexpr std::uint32_t kRecordingVersion = 1;
+
+/// What was run. `inputs_hash` is the content hash of everything the scene reads (io/content_hash).
+struct RecordingHeader {
+  std::string program_version;
+  std::string scene_text;
+  std::string scene_name;
+  std::string scene_folder;
+  std::string inputs_hash;
+  std::uint64_t state_size = 0;           ///< doubles of a state
+  std::vector<std::string> signal_names;  ///< columns of signals.csv after time, status, newton
+
+  bool operator==(const RecordingHeader&) const = default;
+};
+
+/// One accepted step; the first is the state at t = 0.
+struct RecordedStep {
+  double time = 0.0;            ///< [s]
+  std::string status;           ///< "converged", ...
+  std::uint32_t newton = 0;     ///< iterations
+  double residual = 0.0;        ///< [-] relative, as the step's report has it
+  double violation = 0.0;       ///< [m] largest of the constraints
+  std::vector<double> signals;  ///< one per name of the header
+  std::vector<double> state;    ///< state_size values
+};
+
+struct Recording {
+  RecordingHeader header;
+  std::vector<RecordedStep> steps;
+  bool torn = false;              ///< something unreadable follows the last step kept here
+  std::uint64_t valid_bytes = 0;  ///< of the file up to the end of that step
+};
+
+/// Reads all whole records; stops at the first that is torn or damaged. Throws InputError if the file cannot be read,
+/// is no recording, is of another version or breaks off in its header.
+Recording read_recording(const std::filesystem::path& path);
+
+/// The same from a stream of `size` bytes; `file` is named in errors.
+Recording read_recording(std::istream& stream, std::uint64_t size, const std::string& file);
+
+/// Writes a recording. Each step has reached the operating system when `append` returns, so a killed process loses
+/// nothing that was finished (a power cut may). Failing writes throw WriteError and leave what is there readable.
+class RecordingWriter {
+ public:
+  /// A new recording; a file of that name is replaced.
+  static RecordingWriter create(const std::filesystem::path& path, const RecordingHeader& header);
+
+  /// Goes on after the last whole step; what is torn or damaged behind it is dropped. InputError as `read_recording`.
+  static RecordingWriter append_to(const std::filesystem::path& path);
+
+  /// Sizes must be those of the header (std::invalid_argument otherwise).
+  void append(const RecordedStep& step);
+
+  std::uint64_t steps() const { return records_ - 1; }  ///< in the file so far
+
+ private:
+  RecordingWriter(AppendFile file, std::uint64_t state_size, std::size_t signals, std::uint64_t records)
+      : file_(std::move(file)), state_size_(state_size), signals_(signals), records_(records) {}
+
+  AppendFile file_;
+  std::uint64_t state_size_;
+  std::size_t signals_;
+  std::uint64_t records_;  ///< header and steps
+};
+
+}  // namespace sinew::io

@@ -1,0 +1,62 @@
+#include "sinew/io/scene_file.hpp"
+
+#include "sinew/error/input_error.hpp"
+#include "sinew/io/document.hpp"
+#include "sinew/io/scene_fields.hpp"
+
+namespace sinew::io {
+namespace {
+
+void collect_lines(std::map<std::string, int>& lines, const Node& node, const std::string& path) {
+  const std::string prefix = path.empty() ? "" : path + ".";
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const std::string here = prefix + std::to_string(i);
+    lines[here] = node.items[i].line;
+    collect_lines(lines, node.items[i], here);
+  }
+  for (const Entry& entry : node.entries) {
+    lines[prefix + entry.key] = line_of(entry);
+    collect_lines(lines, entry.value, prefix + entry.key);
+  }
+}
+
+}  // namespace
+
+SceneFile read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return parse_scene(read_text(file), file, file.parent_path(), overrides);
+}
+
+SceneFile parse_scene(const std::string& text, const std::filesystem::path& name, const std::filesystem::path& folder,
+                      const std::vector<std::string>& overrides) {
+  Node root = parse_document(text, name.string());
+  if (root.kind == Node::Kind::map) {
+    for (const std::string& assignment : overrides) set_value(root, assignment);
+  }
+  SceneFile file;
+  file.scene = scene_type().read(At(root, name.string()));
+  file.scene.folder = folder;
+  file.text = overrides.empty() ? text : write_document(root);
+  file.path = name;
+  collect_lines(file.lines, root, "");
+  return file;
+}
+
+int line_of(const SceneFile& file, const std::string& field_path) {
+  for (std::string path = field_path; !path.empty();) {
+    if (const auto found = file.lines.find(path); found != file.lines.end()) return found->second;
+    const std::size_t dot = path.rfind('.');
+    path.resize(dot == std::string::npos ? 0 : dot);
+  }
+  return 0;
+}
+
+std::string scene_schema() {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sinew scene"}};
+  schema.update(scene_type().schema());
+  schema["anyOf"] =
+      Json::array({Json{{"required", Json::array({"solids"})}}, Json{{"required", Json::array({"rods"})}}});
+  schema["$defs"] = quantity_definitions();
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace sinew::io

@@ -1,0 +1,51 @@
+#include "sinew/io/signals_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <stdexcept>
+
+namespace sinew::io {
+namespace {
+
+/// In quotes if it holds a mark of the format (RFC 4180).
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string header_row(const std::vector<std::string>& signal_names) {
+  std::string row = "time,status,newton";
+  for (const std::string& name : signal_names) row += "," + cell(name);
+  return row + "\n";
+}
+
+std::string row_of(const RecordedStep& step) {
+  std::string row = fmt::format("{:.17g},{},{}", step.time, cell(step.status), step.newton);
+  for (const double value : step.signals) fmt::format_to(std::back_inserter(row), ",{:.17g}", value);
+  return row + "\n";
+}
+
+}  // namespace
+
+SignalsCsvWriter::SignalsCsvWriter(const std::filesystem::path& path, const std::vector<std::string>& signal_names)
+    : file_(path, AppendFile::Start::empty), signals_(signal_names.size()) {
+  file_.append(header_row(signal_names));
+}
+
+void SignalsCsvWriter::append(const RecordedStep& step) {
+  if (step.signals.size() != signals_)
+    throw std::invalid_argument(
+        fmt::format("row has {} signals, the table {} columns for them", step.signals.size(), signals_));
+  file_.append(row_of(step));
+}
+
+void write_signals_csv(const std::filesystem::path& path, const Recording& recording) {
+  std::string text = header_row(recording.header.signal_names);
+  for (const RecordedStep& step : recording.steps) text += row_of(step);
+  AppendFile(path, AppendFile::Start::empty).append(text);
+}
+
+}  // namespace sinew::io

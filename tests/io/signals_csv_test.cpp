@@ -1,0 +1,109 @@
+#include "sinew/io/signals_csv.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <clocale>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <sstream>
+
+namespace sinew::io {
+namespace {
+
+class SignalsCsv : public testing::Test {
+ protected:
+  SignalsCsv() {
+    char name[] = "/tmp/sinew_csv_XXXXXX";
+    folder_ = mkdtemp(name);
+    path_ = folder_ / "signals.csv";
+  }
+  ~SignalsCsv() override { std::filesystem::remove_all(folder_); }
+
+  std::string text() const {
+    std::ifstream stream(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::filesystem::path folder_, path_;
+};
+
+RecordedStep row(double time, std::vector<double> signals, std::string status = "converged") {
+  return {.time = time,
+          .status = std::move(status),
+          .newton = 3,
+          .residual = 0,
+          .violation = 0,
+          .signals = std::move(signals),
+          .state = {}};
+}
+
+TEST_F(SignalsCsv, has_the_stated_columns_and_digits) {
+  SignalsCsvWriter writer(path_, {"tip.x", "pull.force"});
+  EXPECT_EQ(text(), "time,status,newton,tip.x,pull.force\n");
+  writer.append(row(0.0, {0.1, -0.0}));
+  EXPECT_EQ(text(), "time,status,newton,tip.x,pull.force\n0,converged,3,0.10000000000000001,-0\n");  // at once
+  writer.append(row(0.01, {1e-300, 12345678.0}, "odd, \"status\""));
+  EXPECT_EQ(text(),
+            "time,status,newton,tip.x,pull.force\n0,converged,3,0.10000000000000001,-0\n"
+            "0.01,\"odd, \"\"status\"\"\",3,1e-300,12345678\n");
+}
+
+TEST_F(SignalsCsv, a_recording_gives_the_same_table_as_the_stream) {
+  Recording recording;
+  recording.header.signal_names = {"a.x", "a.y"};
+  {
+    SignalsCsvWriter writer(path_, recording.header.signal_names);
+    for (int k = 0; k < 20; ++k) {
+      recording.steps.push_back(row(0.1 * k, {1.0 / (k + 1), -7.0 * k}));
+      writer.append(recording.steps.back());
+    }
+  }
+  const std::string streamed = text();
+  write_signals_csv(path_, recording);
+  EXPECT_EQ(text(), streamed);
+  recording.steps.resize(2);
+  write_signals_csv(path_, recording);  // a shorter one leaves nothing of the longer
+  EXPECT_EQ(text(), streamed.substr(0, text().size()));
+}
+
+TEST_F(SignalsCsv, every_double_is_read_back_exactly) {
+  std::mt19937_64 random(7);
+  std::vector<double> values = {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(), -0.0};
+  while (values.size() < 2000) {
+    const double value = std::bit_cast<double>(random());
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  SignalsCsvWriter writer(path_, {"v"});
+  for (const double value : values) writer.append(row(value, {value}));
+  std::istringstream lines(text());
+  std::string line;
+  std::getline(lines, line);
+  for (const double value : values) {
+    ASSERT_TRUE(std::getline(lines, line));
+    for (const std::string& number : {line.substr(0, line.find(',')), line.substr(line.rfind(',') + 1)})
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(std::strtod(number.c_str(), nullptr)),
+                std::bit_cast<std::uint64_t>(value));
+  }
+}
+
+TEST_F(SignalsCsv, has_a_point_whatever_the_locale) {
+  const std::string old = std::setlocale(LC_ALL, nullptr);
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"})
+    if (std::setlocale(LC_ALL, name)) break;  // (where none is installed the test says little)
+  SignalsCsvWriter(path_, {"v"}).append(row(0.5, {1234.5}));
+  std::setlocale(LC_ALL, old.c_str());
+  EXPECT_EQ(text(), "time,status,newton,v\n0.5,converged,3,1234.5\n");
+}
+
+TEST_F(SignalsCsv, refuses_rows_of_another_width) {
+  SignalsCsvWriter writer(path_, {"v"});
+  EXPECT_THROW(writer.append(row(0, {})), std::invalid_argument);
+  EXPECT_THROW(SignalsCsvWriter(folder_ / "no" / "where", {}), WriteError);
+}
+
+}  // namespace
+}  // namespace sinew::io
