@@ -13,6 +13,7 @@
 
 #include "sinew/io/append_file.hpp"
 #include "sinew/io/color_map.hpp"
+#include "sinew/io/picture_page.hpp"
 #include "sinew/io/readable.hpp"
 
 namespace sinew::io {
@@ -225,7 +226,7 @@ TEST_F(Picture, stress_is_that_of_the_tetrahedron_behind_each_face) {
       0, 0, 1, 0, 0,             //
       0, 0, 0, 1, 0;
   solid.nodes = solid.rest;
-  solid.tetrahedra = {{0, 1, 2, 3}, {0, 2, 4, 3}};
+  solid.tetrahedra = {{3, 2, 1, 0}, {4, 0, 3, 2}};
   solid.surface = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 4, 2}, {2, 4, 3}, {4, 0, 3}};
   solid.von_mises.resize(2);
   solid.von_mises << 0.0, 5e3;
@@ -314,6 +315,38 @@ TEST_F(Picture, takes_any_text_and_crowds_of_names) {
 
 TEST_F(Picture, says_where_it_cannot_write) {
   EXPECT_THROW(draw_picture(folder_ / "no" / "where.png", beam(), beam()), WriteError);
+}
+
+TEST(Page, names_find_room_beside_each_other_and_off_the_ink) {
+  const Page page(800, 600);
+  page.line({300, 300}, {420, 300}, 60, kInk);
+  const Area area{10, 10, 790, 590};
+  std::vector<Area> taken;
+  for (int i = 0; i < 20; ++i) {
+    Area room;
+    if (!find_room(page, {400, 300}, {120, 34}, area, taken, &room)) break;
+    EXPECT_TRUE(area.holds(room));
+    EXPECT_NEAR(room.right - room.left, 120, 1e-9);
+    EXPECT_LT(page.inked(room), i < 8 ? 1e-12 : 0.02) << i;
+    for (const Area& other : taken) EXPECT_FALSE(other.meets(room));
+    taken.push_back(room);
+  }
+  EXPECT_GE(taken.size(), 8u);
+  Area room;
+  EXPECT_FALSE(find_room(page, {400, 300}, {120, 34}, area, {area}, &room));
+  EXPECT_FALSE(find_room(page, {400, 300}, {900, 34}, area, {}, &room));
+}
+
+TEST(Page, text_is_made_to_fit_and_to_be_valid) {
+  const Page page(100, 100);
+  const TextStyle style{.size = 20};
+  EXPECT_EQ(page.fitted("tip", style, 100), "tip");
+  const std::string cut = page.fitted(std::string(300, 'w'), style, 100);
+  EXPECT_LE(page.text_width(cut, style), 100);
+  EXPECT_GT(page.text_width(cut, style), 70);
+  EXPECT_EQ(printable("a\xc3\xa9\xff\n\xed\xa0\x80"
+                      "b"),
+            "a\xc3\xa9? ???b");
 }
 
 TEST(Readable, has_three_digits_and_a_unit_that_fits) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <locale>
 #include <random>
 #include <sstream>
 
@@ -90,11 +91,19 @@ TEST_F(SignalsCsv, every_double_is_read_back_exactly) {
   }
 }
 
+struct Comma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
 TEST_F(SignalsCsv, has_a_point_whatever_the_locale) {
   const std::string old = std::setlocale(LC_ALL, nullptr);
+  const std::locale old_cpp = std::locale::global(std::locale(std::locale::classic(), new Comma));
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"})
-    if (std::setlocale(LC_ALL, name)) break;  // (where none is installed the test says little)
+    if (std::setlocale(LC_ALL, name)) break;  // (the C library's, where one is installed)
   SignalsCsvWriter(path_, {"v"}).append(row(0.5, {1234.5}));
+  std::locale::global(old_cpp);
   std::setlocale(LC_ALL, old.c_str());
   EXPECT_EQ(text(), "time,status,newton,v\n0.5,converged,3,1234.5\n");
 }

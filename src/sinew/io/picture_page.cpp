@@ -203,13 +203,13 @@ double draw_scale_bar(const Page& page, const PictureView& view, double left, do
   if (!(width > 1.0) || !std::isfinite(width)) return left;
   page.line({left, y}, {left + width, y}, 3.0, kInk);
   for (const double x : {left, left + width}) page.line({x, y - 7}, {x, y + 7}, 3.0, kInk);
-  const Unit unit = length_unit(length);
+  const ShownUnit unit = length_unit(length);
   page.text(left + width / 2, y - 16, fmt::format("{:g} {}", length / unit.factor, unit.symbol),
             {.size = 19, .align = 0.5});
   return left + width;
 }
 
-void draw_legend(const Page& page, const Area& area, const std::string& what, double largest, const Unit& unit,
+void draw_legend(const Page& page, const Area& area, const std::string& what, double largest, const ShownUnit& unit,
                  bool open) {
   const double right = area.right + 62;
   page.text(right, area.top - 54, what, {.size = 19, .bold = true, .align = 1.0});

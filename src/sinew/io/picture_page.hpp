@@ -69,7 +69,7 @@ double draw_scale_bar(const Page& page, const PictureView& view, double left, do
 
 /// The colours of values 0 ... `largest` [SI] in `unit`, in the area; `open` if there are larger ones; a word
 /// instead if `largest` is 0.
-void draw_legend(const Page& page, const Area& area, const std::string& what, double largest, const Unit& unit,
+void draw_legend(const Page& page, const Area& area, const std::string& what, double largest, const ShownUnit& unit,
                  bool open);
 
 /// Finds room for a box of `size` near `point`, inside `area`, off `taken`, where there is little ink.

@@ -9,21 +9,21 @@ namespace sinew::io {
 namespace {
 
 /// First unit, from large to small, of which there is at least one.
-Unit best(double largest, const std::vector<Unit>& units, const Unit& of_zero) {
+ShownUnit best(double largest, const std::vector<ShownUnit>& units, const ShownUnit& of_zero) {
   largest = std::abs(largest);
   if (!(largest > 0.0) || !std::isfinite(largest)) return of_zero;
-  for (const Unit& unit : units)
+  for (const ShownUnit& unit : units)
     if (largest >= 0.9995 * unit.factor) return unit;  // (0.9996 mm is shown as 1.00 mm)
   return units.back();
 }
 
 }  // namespace
 
-Unit length_unit(double largest) {
+ShownUnit length_unit(double largest) {
   return best(largest, {{1e3, "km"}, {1.0, "m"}, {1e-3, "mm"}, {1e-6, "µm"}, {1e-9, "nm"}}, {1e-3, "mm"});
 }
 
-Unit stress_unit(double largest) {
+ShownUnit stress_unit(double largest) {
   return best(largest, {{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}, {1.0, "Pa"}}, {1e3, "kPa"});
 }
 
@@ -37,7 +37,7 @@ std::string readable(double shown) {
 }
 
 std::string readable_length(double length) {
-  const Unit unit = length_unit(length);
+  const ShownUnit unit = length_unit(length);
   return readable(length / unit.factor) + " " + unit.symbol;
 }
 

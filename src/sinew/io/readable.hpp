@@ -7,16 +7,16 @@
 namespace sinew::io {
 
 /// A unit to show values in: value in SI = shown * factor.
-struct Unit {
+struct ShownUnit {
   double factor = 1.0;
   std::string symbol;  ///< "mm"
 };
 
 /// The unit in which values up to `largest` [m] read best: nm, um, mm, m or km.
-Unit length_unit(double largest);
+ShownUnit length_unit(double largest);
 
 /// The same for a stress [Pa]: Pa, kPa, MPa or GPa.
-Unit stress_unit(double largest);
+ShownUnit stress_unit(double largest);
 
 /// About three significant digits, no exponent for what is neither tiny nor huge: "34.2", "0.051", "1200".
 std::string readable(double shown);
