@@ -130,6 +130,7 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
     io::PictureOptions options;
     options.title = model.scene.title.empty() ? std::filesystem::path(recording.header.scene_name).stem().string()
                                               : model.scene.title;
+    options.up = -model.scene.gravity;
     io::draw_picture(folder / "picture.png",
                      snapshot(model, unpack(model, recording.steps.front().state), recording.steps.front().status),
                      snapshot(model, unpack(model, recording.steps.back().state), recording.steps.back().status),

@@ -272,7 +272,8 @@ solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const 
 
 bool all_clamped(const SolidModel& solid, const solid::EmbeddedPoint& point) {
   for (int c = 0; c < 4; ++c) {
-    if (point.weights[c] != 0.0 && solid.body.unknown[solid.body.tetrahedra[point.element][c]] >= 0) return false;
+    if (std::abs(point.weights[c]) > 1e-9 && solid.body.unknown[solid.body.tetrahedra[point.element][c]] >= 0)
+      return false;
   }
   return true;
 }

@@ -39,7 +39,6 @@ void add_rod(const StepContext& context, const State& iterate, int number, Reduc
   const int n = rod.coordinates();
   auto r = problem.r.segment(model.offset, n);
   auto B = problem.B.block(model.offset, model.offset, n, n);
-  const Eigen::VectorXd lever = lever_arms(rod);
 
   // Hooke: F(q) = K (q - q_rest).
   for (int i = 0; i < rod.sections(); ++i) {
@@ -48,14 +47,15 @@ void add_rod(const StepContext& context, const State& iterate, int number, Reduc
       const double k = rod.section_length(i) * rod.stiffness[i][rod.basis[c]];
       r[j] = k * (now.q[j] - rod.rest[j - rod.base_coordinates()]);
       B(j, j) = k;
-      reduced.scale = std::max(reduced.scale, std::abs(r[j]) / lever[j]);
     }
   }
+
+  if (n > 0) reduced.scale = std::max(reduced.scale, (r.array() / lever_arms(rod).array()).abs().maxCoeff());
 
   // Inertia of the mass points by backward Euler on their positions, and their weight.
   std::vector<rod::PointLoad> loads;
   const double h = context.h;
-  Vec3 total = Vec3::Zero();
+  double acting = 0.0;  // inertia and weight each by themselves: in free fall they cancel
   for (std::size_t i = 0; i < rod.masses.size(); ++i) {
     const rod::MassPoint& mass = rod.masses[i];
     const auto column = static_cast<Eigen::Index>(i);
@@ -63,9 +63,9 @@ void add_rod(const StepContext& context, const State& iterate, int number, Reduc
     const Vec3 acceleration = ((X - start.masses.col(column)) / h - start.velocity.col(column)) / h;
     loads.push_back(
         {mass.s, mass.offset, mass.mass * (acceleration - context.model.scene.gravity), mass.mass / (h * h)});
-    total += loads.back().force.cwiseAbs();
+    acting += mass.mass * (acceleration.norm() + context.model.scene.gravity.norm());
   }
-  reduced.scale = std::max(reduced.scale, total.norm());
+  reduced.scale = std::max(reduced.scale, acting);
 
   // Sliding points and anchors: c = P - gamma, G = (gamma_q, gamma_s), and the curvature of lambda . gamma.
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
@@ -100,7 +100,6 @@ void add_rod(const StepContext& context, const State& iterate, int number, Reduc
   }
   std::stable_sort(loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
   rod::add_loads(shape, loads, r, B);
-  (void)lever;
 }
 
 /// The massless cable: constant length with the tension as its multiplier, points held by rows with G = I.

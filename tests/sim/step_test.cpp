@@ -1,0 +1,318 @@
+#include "sinew/sim/step.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/scenes.hpp"
+
+namespace sinew {
+namespace {
+
+using test::mm;
+
+TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
+  const Model model = build(test::cable_block(), test::read_block);
+  Workspace used = make_workspace(model);
+  State state = initial_state(model);
+  for (int i = 0; i < 5; ++i) {
+    const Command command = command_at(model, state.time + 0.01);
+    const StepResult a = step(model, used, command, state, 0.01);
+    Workspace other = make_workspace(model);
+    const StepResult b = step(model, other, command, state, 0.01);
+    ASSERT_EQ(a.report.status, Status::converged);
+    EXPECT_EQ(pack(a.next), pack(b.next));
+    state = a.next;
+  }
+}
+
+TEST(Step, packing_and_unpacking_gives_the_same_state_and_continuation) {
+  const Model model = build(test::cable_block(), test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done);
+  const State middle = unpack(model, pack(trace.states[7]));
+  EXPECT_EQ(pack(middle), pack(trace.states[7]));
+  Workspace workspace = make_workspace(model);
+  EXPECT_EQ(pack(advance(model, workspace, middle).next), pack(trace.states[8]));
+  EXPECT_THROW(unpack(model, {1.0, 2.0}), std::invalid_argument);
+}
+
+TEST(Step, pull_is_met_exactly_and_the_cable_stays_in_its_points) {
+  const Model model = build(test::cable_block(), test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done);
+  EXPECT_NEAR(trace.states.back().rods[0].q[0], 2 * mm, 1e-12);
+  EXPECT_GT(trace.states.back().actuators[0], 0.1);
+  EXPECT_GT(test::tip(model, trace.states.back()).z() - 5 * mm, 3 * mm);  // bends towards the cable's side
+  for (const StepReport& report : trace.reports) EXPECT_LT(report.violation, 1e-10);
+}
+
+TEST(Step, power_of_the_motor_goes_into_the_body) {
+  // Pulled slowly, the work of the motor is the elastic energy of block and cable, up to damping and the integrator.
+  Scene scene = test::cable_block(2 * mm, 0.002);
+  scene.time = {0.01, 1.2};
+  scene.solids[0].second.rayleigh = {0.0, 0.002};
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done);
+  double work = 0.0;
+  for (std::size_t i = 1; i < trace.states.size(); ++i) {
+    const double rate = trace.states[i].rods[0].q[0] - trace.states[i - 1].rods[0].q[0];
+    work += 0.5 * (trace.states[i].actuators[0] + trace.states[i - 1].actuators[0]) * rate;
+  }
+  const State& last = trace.states.back();
+  double stored = solid::elastic_energy(model.solids[0].body, last.solids[0].x);
+  const rod::Rod& rod = model.rods[0].rod;
+  for (int i = 0; i < rod.sections(); ++i) {
+    for (int c = 0; c < rod.strains(); ++c) {
+      const double e = last.rods[0].q[rod.first_coordinate(i) + c] - rod.rest[i * rod.strains() + c];
+      stored += 0.5 * rod.section_length(i) * rod.stiffness[i][rod.basis[c]] * e * e;
+    }
+  }
+  EXPECT_GT(work, 1e-5);
+  EXPECT_NEAR(stored, work, 0.03 * work);
+}
+
+TEST(Step, forces_of_the_motor_and_of_the_clamp_balance) {
+  // At rest what the cable does to the solid is what the motor does to the cable: multipliers are forces [N].
+  Scene scene = test::cable_block();
+  scene.time.duration = 2.0;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  Vec3 total = Vec3::Zero();
+  for (const PointState& point : trace.states.back().points) total += point.lambda;
+  const double motor = trace.states.back().actuators[0];
+  EXPECT_GT(motor, 0.1);
+  EXPECT_NEAR(total.x(), -motor, 1e-6 * motor);  // the base pulls out along -x, the tip is pulled towards it
+}
+
+TEST(Step, force_driven_and_displacement_driven_agree) {
+  Scene scene = test::cable_block();
+  scene.time.duration = 2.0;
+  const Model by_displacement = build(scene, test::read_block);
+  const test::Trace a = test::run_all(by_displacement);
+  scene.actuators[0].second.driven = Driven::force;
+  scene.actuators[0].second.drive = Table{{0.0}, {a.states.back().actuators[0]}};
+  const Model by_force = build(scene, test::read_block);
+  const test::Trace b = test::run_all(by_force);
+  ASSERT_EQ(b.end, RunEnd::done);
+  EXPECT_NEAR(b.states.back().rods[0].q[0], 2 * mm, 1e-8);
+  EXPECT_LT((test::tip(by_displacement, a.states.back()) - test::tip(by_force, b.states.back())).norm(), 1e-8);
+}
+
+TEST(Step, multipliers_are_forces_whatever_the_time_step) {
+  std::vector<double> force;
+  for (double h : {0.02, 0.005}) {
+    Scene scene = test::cable_block();
+    scene.time = {h, 2.0};
+    const Model model = build(scene, test::read_block);
+    force.push_back(test::run_all(model).states.back().actuators[0]);
+  }
+  EXPECT_NEAR(force[0], force[1], 1e-6 * force[0]);
+}
+
+TEST(Step, newton_converges_quadratically_with_the_exact_tangent) {
+  // The residual after n linearisations of one large step: its logarithm at least doubles near the end.
+  std::vector<double> residual;
+  for (int n = 1; n <= 6; ++n) {
+    Scene scene = test::cable_block(2 * mm, 0.2);
+    scene.newton.limit = n;
+    scene.newton.tolerance = 1e-30;  // never met
+    const Model model = build(scene, test::read_block);
+    Workspace workspace = make_workspace(model);
+    const StepReport report = step(model, workspace, command_at(model, 0.01), initial_state(model), 0.01).report;
+    EXPECT_EQ(report.status, Status::max_iterations);
+    EXPECT_EQ(report.newton, n);
+    residual.push_back(report.residual);
+  }
+  bool seen = false;
+  for (std::size_t i = 1; i + 1 < residual.size(); ++i) {
+    if (residual[i] < 1e-2 && residual[i + 1] > 1e-13) {
+      EXPECT_GT(std::log(residual[i + 1]) / std::log(residual[i]), 1.7) << i;
+      seen = true;
+    }
+  }
+  EXPECT_TRUE(seen);
+  EXPECT_LT(residual.back(), 1e-11);
+}
+
+TEST(Step, one_linearisation_is_a_first_order_predictor_of_the_converged_step) {
+  std::vector<double> gap;
+  for (double h : {0.02, 0.01, 0.005}) {
+    Scene scene = test::cable_block(4 * mm, 0.02);
+    scene.time = {h, 0.2};
+    const Model converged = build(scene, test::read_block);
+    scene.newton.iterations = 1;
+    const Model linearized = build(scene, test::read_block);
+    const test::Trace a = test::run_all(converged), b = test::run_all(linearized);
+    EXPECT_EQ(b.reports.back().status, Status::linearized);
+    EXPECT_EQ(b.reports.back().newton, 1);
+    gap.push_back((test::tip(converged, a.states.back()) - test::tip(linearized, b.states.back())).norm());
+  }
+  EXPECT_GT(gap[0], 1e-7);
+  EXPECT_LT(gap[1], 0.7 * gap[0]);
+  EXPECT_LT(gap[2], 0.7 * gap[1]);
+}
+
+TEST(Step, geometric_cable_bends_like_a_rod_that_hardly_resists) {
+  Scene scene = test::cable_block();
+  scene.time.duration = 1.5;
+  scene.rods[0].second.section.radius = 0.05 * mm;
+  const Model thin = build(scene, test::read_block);
+  scene.rods[0].second.cable = Cable::geometric;
+  const Model geometric = build(scene, test::read_block);
+  const test::Trace a = test::run_all(thin), b = test::run_all(geometric);
+  ASSERT_EQ(a.end, RunEnd::done);
+  ASSERT_EQ(b.end, RunEnd::done);
+  const Vec3 rest = test::tip(thin, a.states.front());
+  const double travel = (test::tip(thin, a.states.back()) - rest).norm();
+  EXPECT_LT((test::tip(thin, a.states.back()) - test::tip(geometric, b.states.back())).norm(), 0.02 * travel);
+  EXPECT_NEAR(a.states.back().actuators[0], b.states.back().actuators[0], 0.02 * b.states.back().actuators[0]);
+  EXPECT_NEAR(b.states.back().tensions[0], b.states.back().actuators[0], 1e-3 * b.states.back().tensions[0]);
+}
+
+TEST(Step, turning_the_base_of_a_straight_round_cable_costs_nothing) {
+  // Anchored by position only, the cable's tip is free to turn.
+  Scene scene = test::cable_block();
+  scene.actuators.clear();
+  Actuator twist;
+  twist.rod = "cable";
+  twist.motion = Motion::rotation;
+  twist.driven = Driven::angle;
+  twist.drive = Table{{0.0, 0.1}, {0.0, 1.0}};
+  scene.actuators.emplace_back("twist", twist);
+  scene.rods[0].second.material.density = 0.0;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done);
+  EXPECT_NEAR(trace.states.back().rods[0].q[0], 1.0, 1e-12);
+  EXPECT_NEAR(trace.states.back().actuators[0], 0.0, 1e-9);
+}
+
+TEST(Step, a_moving_frame_carries_everything_attached_to_it) {
+  Scene scene = test::cable_block();
+  scene.actuators[0].second.drive = Table{{0.0}, {0.0}};
+  FrameMotion motion;
+  motion.times = {0.0, 0.1};
+  motion.rotate = {Vec3::Zero(), Vec3(0.2, -0.1, 0.5)};
+  motion.translate = {Vec3::Zero(), Vec3(0.02, 0.01, -0.03)};
+  scene.frames.emplace_back("hand", Frame{{Vec3(0.1, 0.2, 0.3), Vec3(0.5, 0, 0)}, motion});
+  scene.solids[0].second.frame = "hand";
+  scene.rods[0].second.frame = "hand";
+  scene.time.duration = 3.0;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  for (const StepReport& report : trace.reports) EXPECT_FALSE(report.redundant);
+  const Placement moved = frame_displacement(model.scene.frames[0].second, 3.0);
+  EXPECT_GT((apply(moved, test::tip(model, trace.states.front())) - test::tip(model, trace.states.front())).norm(),
+            0.1);
+  EXPECT_LT((apply(moved, test::tip(model, trace.states.front())) - test::tip(model, trace.states.back())).norm(),
+            1e-7);
+  for (int i = 0; i < model.solids[0].body.nodes(); ++i) {
+    if (model.solids[0].body.unknown[i] >= 0) continue;
+    EXPECT_LT((trace.states.back().solids[0].x.col(i) - apply(moved, model.solids[0].body.rest.col(i))).norm(), 1e-15);
+  }
+}
+
+TEST(Step, a_free_tip_leaves_points_behind_and_finds_them_again) {
+  // Pulled out 25 mm of 60, the rod leaves the points near its old tip; pushed back, it meets them again.
+  Scene scene = test::cable_block();
+  scene.couplings[0].anchor_tip = AnchorTip::none;
+  scene.actuators[0].second.drive = Table{{0.0, 0.5, 1.0}, {0.0, 25 * mm, 0.0}};
+  scene.time = {0.01, 1.0};
+  scene.rods[0].second.material.density = 0.0;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  const auto on = [](const State& state) {
+    return std::count_if(state.points.begin(), state.points.end(), [](const auto& p) { return p.on; });
+  };
+  EXPECT_EQ(on(trace.states[0]), 5);   // of 0, 12, .. 60 mm; the first sits in the clamp and was dropped
+  EXPECT_EQ(on(trace.states[50]), 2);  // 12 and 24 mm remain
+  EXPECT_GE(on(trace.states[100]), 4);
+}
+
+// Each way to fail, provoked.
+
+TEST(Status, too_few_iterations_are_reported_and_the_state_is_untouched) {
+  Scene scene = test::cable_block(2 * mm, 0.2);
+  scene.newton.limit = 1;
+  const Model model = build(scene, test::read_block);
+  Workspace workspace = make_workspace(model);
+  const State start = initial_state(model);
+  const StepResult result = step(model, workspace, command_at(model, 0.01), start, 0.01);
+  EXPECT_EQ(result.report.status, Status::max_iterations);
+  EXPECT_EQ(pack(result.next), pack(start));
+}
+
+TEST(Status, a_rod_pushed_back_past_its_entry_is_exhausted) {
+  Scene scene = test::cable_block();
+  scene.couplings[0].anchor_tip = AnchorTip::none;
+  scene.actuators[0].second.drive = Table{{0.0, 0.5}, {0.0, -20 * mm}};
+  scene.time.duration = 0.5;
+  scene.couplings[0].points = std::vector<double>{10 * mm, 20 * mm, 30 * mm};
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  EXPECT_EQ(trace.end, RunEnd::stopped);
+  EXPECT_EQ(trace.failure.status, Status::rod_exhausted);
+  EXPECT_EQ(trace.failure.detail, "rods.cable");
+  EXPECT_GT(trace.states.size(), 20u);  // everything up to there is kept
+}
+
+TEST(Status, force_beyond_all_numbers_stops_without_nan) {
+  Scene scene = test::cable_block();
+  scene.actuators[0].second.driven = Driven::force;
+  scene.actuators[0].second.drive = Table{{0.0}, {1e200}};
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  EXPECT_EQ(trace.end, RunEnd::stopped);
+  EXPECT_FALSE(accepted(trace.failure.status));
+  for (const State& state : trace.states) {
+    for (double number : pack(state)) ASSERT_TRUE(std::isfinite(number));
+  }
+}
+
+TEST(Status, every_status_has_a_name_and_a_meaning) {
+  for (Status status : {Status::rest, Status::converged, Status::linearized, Status::max_iterations, Status::singular,
+                        Status::diverged, Status::rod_exhausted}) {
+    EXPECT_NE(to_string(status), "unknown");
+    EXPECT_FALSE(explain(status).empty());
+  }
+}
+
+TEST(Advance, a_step_that_does_not_converge_is_halved_and_meets_the_grid_again) {
+  // A pull that one step cannot follow within three linearisations.
+  Scene scene = test::cable_block(6 * mm, 0.3);
+  scene.time = {0.02, 0.1};
+  scene.newton.limit = 4;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  EXPECT_GT(trace.states.size(), 6u);
+  EXPECT_EQ(trace.states.back().grid, 5);
+  EXPECT_EQ(trace.states.back().time, 0.1);
+  long grid = 0;
+  for (const State& state : trace.states) {
+    EXPECT_GE(state.grid, grid);
+    if (state.grid > grid) {
+      EXPECT_EQ(state.time, static_cast<double>(state.grid) * 0.02);
+    }
+    grid = state.grid;
+  }
+}
+
+TEST(Advance, halving_ends_after_five_times) {
+  Scene scene = test::cable_block(6 * mm, 0.3);
+  scene.newton.limit = 2;
+  scene.newton.tolerance = 1e-30;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  EXPECT_EQ(trace.end, RunEnd::stopped);
+  EXPECT_EQ(trace.failure.status, Status::max_iterations);
+  EXPECT_EQ(trace.states.size(), 1u);
+}
+
+}  // namespace
+}  // namespace sinew
