@@ -147,9 +147,7 @@ class Process {
   }
 
  private:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   static int caught() {
     std::string name = (std::filesystem::temp_directory_path() / "sinew_out_XXXXXX").string();
     const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
