@@ -82,10 +82,13 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     violation = std::max(violation, step.violation);
     newton = std::max(newton, step.newton);
   }
+  const double gap =
+      recording.steps.empty() ? 0.0 : dropped_gap(loaded.model, unpack(loaded.model, recording.steps.back().state));
   report["summary"] = {{"steps", counts},
                        {"largest_newton", newton},
                        {"largest_residual", residual},
-                       {"largest_violation_m", violation}};
+                       {"largest_violation_m", violation},
+                       {"gap_at_dropped_points_m", gap}};
   if (!summary.times.empty()) {
     report["time_per_step"] = {{"forces", stage_json(summary.times, &StageTimes::forces)},
                                {"assembly", stage_json(summary.times, &StageTimes::assembly)},

@@ -210,6 +210,16 @@ TEST_F(Resume, UsesTheSceneOfTheRecordingNotTheFile) {
   expect_resumed_to_reference("edited");
 }
 
+TEST_F(Resume, MakesOnlyTheStepsThatAreMissing) {
+  damage("half", recording.substr(0, recording.size() / 2));
+  const Finished done = sinew({"run", "--resume", scene.path_of("half")});  // (not quiet: progress has the times)
+  EXPECT_EQ(done.code, 0) << said(done);
+  EXPECT_NE(done.err.find("t = 0.200 s"), std::string::npos) << said(done);
+  for (const char* early : {"t = 0.010 s", "t = 0.020 s", "t = 0.040 s", "t = 0.060 s", "t = 0.080 s"})
+    EXPECT_EQ(done.err.find(early), std::string::npos) << said(done);
+  EXPECT_TRUE(scene.recording("half") == recording);
+}
+
 TEST_F(Resume, OfARunThatIsStillRunningIsRefusedAndHarmsNothing) {
   Process run(scene.run("running"));
   reach(run, "running", 0.2);

@@ -285,7 +285,7 @@ constexpr double kNewPart = 0.2;
 
 /// Keeps the points that say something new: none that touches no free unknown, and of those that a volume's elements
 /// carry only as many as are independent (a linear element follows a straight line: two points of it say all).
-std::vector<PointModel> independent_points(const Model& model, const std::vector<PointModel>& candidates,
+std::vector<PointModel> independent_points(Model& model, const std::vector<PointModel>& candidates,
                                            CouplingFacts& facts) {
   std::vector<PointModel> free, held, kept;
   for (const PointModel& point : candidates) {
@@ -306,6 +306,7 @@ std::vector<PointModel> independent_points(const Model& model, const std::vector
         kept.push_back(points[i]);
       } else {
         facts.redundant.push_back(points[i].abscissa);
+        model.dropped.push_back(points[i]);
       }
     }
   };

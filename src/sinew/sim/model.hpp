@@ -83,6 +83,7 @@ struct Model {
   std::vector<SolidModel> solids;
   std::vector<RodModel> rods;
   std::vector<PointModel> points;
+  std::vector<PointModel> dropped;  ///< asked for, but determined by others: no rows, only watched
   std::vector<ActuatorModel> actuators;
   std::vector<OutputModel> outputs;
   std::vector<CouplingFacts> couplings;

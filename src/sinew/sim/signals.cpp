@@ -1,7 +1,9 @@
 #include "sinew/sim/signals.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "sinew/constraint/sliding.hpp"
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/rod/section.hpp"
 
@@ -107,6 +109,29 @@ std::vector<double> signal_values(const Model& model, const State& state) {
     values.push_back(state.actuators[i]);
   }
   return values;
+}
+
+double dropped_gap(const Model& model, const State& state) {
+  double gap = 0.0;
+  for (const PointModel& point : model.dropped) {
+    const RodModel& rod = model.rods[point.rod];
+    if (rod.geometric) continue;
+    const rod::Configuration shape = rod::configure(rod.rod, base_now(model, state, rod), state.rods[point.rod].q);
+    // The abscissa moved about as far as that of the nearest kept point.
+    double s = point.abscissa, nearest = INFINITY;
+    for (std::size_t k = 0; k < model.points.size(); ++k) {
+      const double apart = std::abs(model.points[k].abscissa - point.abscissa);
+      if (model.points[k].rod != point.rod || model.points[k].solid != point.solid || !state.points[k].on ||
+          apart >= nearest)
+        continue;
+      nearest = apart;
+      s = point.abscissa + state.points[k].s - model.points[k].abscissa;
+    }
+    const Vec3 P = solid::position(point.where, model.solids[point.solid].body.tetrahedra, state.solids[point.solid].x);
+    s = constraint::project(shape, s, P);
+    if (s <= rod.rod.length()) gap = std::max(gap, constraint::violation(shape, s, P));
+  }
+  return gap;
 }
 
 Snapshot snapshot(const Model& model, const State& state, const std::string& status) {

@@ -16,6 +16,10 @@ std::vector<double> signal_values(const Model& model, const State& state);
 /// Position [m] of an output.
 Vec3 output_position(const Model& model, const State& state, const OutputModel& output);
 
+/// Largest distance [m] between a dropped sliding point and its rod: what the rows that were left out would have said.
+/// 0 if none was dropped.
+double dropped_gap(const Model& model, const State& state);
+
 /// What can be seen of a state: nodes, stresses, rods sampled at section ends and between, points and outputs.
 Snapshot snapshot(const Model& model, const State& state, const std::string& status);
 
