@@ -2,11 +2,13 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
+#include "sinew/io/append_file.hpp"
 
 namespace {
 
@@ -60,6 +62,18 @@ int main(int argc, char** argv) {
 
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of scene files");
 
+  const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
+  const auto is_command = [&commands](const char* word) {
+    return std::any_of(commands.begin(), commands.end(),
+                       [word](const CLI::App* command) { return command->get_name() == word; });
+  };
+  if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
+    fmt::print(
+        stderr,
+        "{}: is not a command of sinew\n    the commands are run, check, info, export, schema; see sinew --help\n",
+        argv[1]);
+    return sinew::app::kBadInput;
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -72,6 +86,9 @@ int main(int argc, char** argv) {
     if (*views) return sinew::app::export_run(recorded);
     if (*schema) return sinew::app::print_schema();
   } catch (const sinew::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return sinew::app::kBadInput;
+  } catch (const sinew::io::WriteError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return sinew::app::kBadInput;
   } catch (const std::exception& error) {

@@ -42,8 +42,8 @@ void Progress::update(double done, const std::string& note) {
     fmt::print(stderr, "\r{} [{}{}] {:3.0f} %  {}  {} left\033[K", label_, std::string(full, '#'),
                std::string(kWidth - full, '.'), 100.0 * part, note, duration_text(left));
     std::fflush(stderr);
-  } else if (static_cast<int>(10.0 * part) > tenth_) {
-    tenth_ = static_cast<int>(10.0 * part);
+  } else if (static_cast<int>(10.0 * part + 1e-9) > tenth_) {
+    tenth_ = static_cast<int>(10.0 * part + 1e-9);
     fmt::print(stderr, "{} {:3d} %  {}  {} left\n", label_, 10 * tenth_, note, duration_text(left));
   }
 }

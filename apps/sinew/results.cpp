@@ -69,8 +69,8 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["end"]["status"] = to_string(summary.failure.status);
     report["end"]["where"] = summary.failure.detail;
     report["end"]["newton"] = summary.failure.newton;
-    report["end"]["residual"] = summary.failure.residual;
-    report["end"]["violation_m"] = summary.failure.violation;
+    if (std::isfinite(summary.failure.residual)) report["end"]["residual"] = summary.failure.residual;
+    if (std::isfinite(summary.failure.violation)) report["end"]["violation_m"] = summary.failure.violation;
     report["end"]["meaning"] = explain(summary.failure.status);
   }
   std::map<std::string, int> counts;

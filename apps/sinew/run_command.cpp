@@ -86,6 +86,11 @@ int resume(const RunOptions& options) {
     throw InputError({path.string(), 0, "", "", "holds states of another version of the engine",
                       "start the run again with this version"});
   }
+  if (!recording.torn && state.grid >= grid_steps(loaded.model.scene) &&
+      std::filesystem::exists(options.resume / "report.json")) {
+    fmt::print("The run in {} is complete, up to t = {:.6g} s.\n", options.resume.string(), state.time);
+    return kDone;
+  }
   return run_and_record(loaded, state, options.resume, io::RecordingWriter::append_to(path), options.quiet);
 }
 

@@ -64,8 +64,9 @@ class Resume : public testing::Test {
 
 TEST_F(Resume, AfterBeingKilledGoesOnToTheSameBytes) {
   std::mt19937 random(20240917);
+  const int trials = kSlower > 1.0 ? 2 : 4;
   int killed = 0;
-  for (int trial = 0; trial < 4; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     const double part = std::uniform_real_distribution<double>(0.05, 0.9)(random);
     SCOPED_TRACE("killed at " + std::to_string(part) + " of the recording");
     const std::string out = "killed" + std::to_string(trial);
@@ -78,7 +79,7 @@ TEST_F(Resume, AfterBeingKilledGoesOnToTheSameBytes) {
     }
     expect_resumed_to_reference(out);
   }
-  EXPECT_GE(killed, 3) << "the runs were over before they could be killed";
+  EXPECT_GE(killed, trials - 1) << "the runs were over before they could be killed";
 }
 
 TEST_F(Resume, OfARunKilledTwiceGoesOnToTheSameBytes) {

@@ -98,7 +98,7 @@ TEST(Document, RefusesWhatIsNotASmallPlainDocument) {
       {"a: 'open\n", 1, "that is never closed"},
       {"a: 1\nb: \"open\nc: 2\n", 2, "that is never closed"},
       {"a: 1\n'b: 2\n", 1, "that is never closed"},
-      {"a: 1\n\tb: 2\n", 2, "not valid YAML"},
+      {"a: 1\n\tb: 2\n", 2, "tab begins this line"},
       {"a: 1\n]\n", 2, "not valid YAML"},
       {"? [a, b]\n: 1\n", 1, "cannot be a key"},
       {"{a: 1}: 1\n", 1, "cannot be a key"},

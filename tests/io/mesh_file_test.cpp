@@ -142,7 +142,12 @@ TEST_F(ReadMesh, RefusesWhatIsNoMeshFile) {
     try {
       read_mesh(path);
     } catch (const InputError& error) {
-      EXPECT_EQ(error.fault().file, path.string());
+      // A path that leads nowhere is a fault of whatever named it; what is wrong inside is a fault of the file.
+      const bool inside = std::filesystem::is_regular_file(path);
+      EXPECT_EQ(error.fault().file, inside ? path.string() : "");
+      if (!inside) {
+        EXPECT_EQ(error.fault().value, path.string());
+      }
       return error.what();
     }
     return "accepted";

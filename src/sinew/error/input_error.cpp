@@ -12,7 +12,10 @@ std::string to_string(const InputFault& fault) {
     text += part;
   };
   append(fault.file, "");
-  if (fault.line > 0) text += ":" + std::to_string(fault.line);
+  if (fault.line > 0) {
+    text += ':';
+    text += std::to_string(fault.line);
+  }
   append(fault.path, ": ");
   append(fault.value, fault.path.empty() ? ": " : " = ");
   append(fault.rule, ": ");

@@ -99,7 +99,8 @@ class Builder : public YAML::EventHandler {
       refuse(mark, "", fmt::format("is nested more than {} deep", deepest_document), "close the brackets");
     }
     if (!open_.empty() && open_.back().node.kind == Node::Kind::map && !open_.back().key) {
-      refuse(mark, "", "a list or map cannot be a key", "write `key: value` with a plain word as the key");
+      refuse(mark, "", "a list or map cannot be a key",
+             "close every bracket, and write `key: value` with a plain word as the key");
     }
     Open fresh;
     fresh.node.kind = kind;
@@ -209,6 +210,18 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
+namespace {
+/// The first line with a tab among the blanks it begins with, 0 if there is none.
+int line_that_begins_with_a_tab(const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string::npos) return number;
+  }
+  return 0;
+}
+}  // namespace
+
 Node parse_document(const std::string& text, const std::string& name) {
   require_text(text, name);
   const int lines = static_cast<int>(std::count(text.begin(), text.end(), '\n')) + (text.ends_with('\n') ? 0 : 1);
@@ -220,6 +233,13 @@ Node parse_document(const std::string& text, const std::string& name) {
     while (parser.HandleNextDocument(builder)) any = true;
   } catch (const YAML::Exception& error) {
     const bool quote = error.msg == "illegal EOF in scalar";
+    const int tab = line_that_begins_with_a_tab(text);
+    if (!quote && tab > 0) {
+      throw InputError({.file = name,
+                        .line = tab,
+                        .rule = "a tab begins this line: YAML takes only blanks there",
+                        .remedy = "indent with blanks"});
+    }
     const int line = quote ? builder.line() : error.mark.is_null() ? 0 : std::min(error.mark.line + 1, lines);
     throw InputError(
         {.file = name,

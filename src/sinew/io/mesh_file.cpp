@@ -21,20 +21,25 @@ namespace {
   throw InputError({.file = file, .line = 0, .path = "", .value = value, .rule = rule, .remedy = remedy});
 }
 
+/// Faults of the path itself: what is wrong stands in whatever named the file, so that is for the caller to say.
+[[noreturn]] void fail_path(const std::string& file, const std::string& rule, const std::string& remedy) {
+  throw InputError({.file = "", .line = 0, .path = "", .value = file, .rule = rule, .remedy = remedy});
+}
+
 std::string read_bytes(const std::filesystem::path& path) {
   const std::string file = path.string();
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    fail(file, "", "the mesh file does not exist", "check the path; it is relative to the scene file");
+    fail_path(file, "the mesh file does not exist", "check the path; in a scene it is relative to the scene file");
   }
   if (!std::filesystem::is_regular_file(status)) {
-    fail(file, "", std::filesystem::is_directory(status) ? "is a folder, not a mesh file" : "is not a regular file",
-         "give the path of a .vtk, .vtu or .msh file");
+    fail_path(file, std::filesystem::is_directory(status) ? "is a folder, not a mesh file" : "is not a regular file",
+              "give the path of a .vtk, .vtu or .msh file");
   }
   std::ifstream stream(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.is_open() || stream.bad()) fail(file, "", "the mesh file cannot be read", "check who may read it");
+  if (!stream.is_open() || stream.bad()) fail_path(file, "the mesh file cannot be read", "check who may read it");
   return bytes;
 }
 

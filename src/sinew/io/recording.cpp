@@ -244,10 +244,13 @@ Recording read_recording(std::istream& stream, std::uint64_t size, const std::st
 Recording read_recording(const std::filesystem::path& path) {
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error) throw refused(path.string(), "cannot be read: " + error.message(), "");
+  if (error)
+    throw refused(path.string(), "cannot be read: " + error.message(), "give the output folder of an earlier run");
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw refused(path.string(), "cannot be read: " + std::generic_category().message(errno), "");
+  if (!stream)
+    throw refused(path.string(), "cannot be read: " + std::generic_category().message(errno),
+                  "give the output folder of an earlier run");
   return read_recording(stream, size, path.string());
 }
 

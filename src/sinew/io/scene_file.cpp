@@ -34,7 +34,7 @@ SceneFile parse_scene(const std::string& text, const std::filesystem::path& name
   }
   SceneFile file;
   file.scene = scene_type().read(At(root, name.string()));
-  file.scene.folder = folder;
+  file.scene.folder = folder.empty() ? "." : folder;
   file.text = overrides.empty() ? text : write_document(root);
   file.path = name;
   collect_lines(file.lines, root, "");

@@ -118,6 +118,21 @@ void make_pattern(SolidModel& model) {
   }
 }
 
+/// Reads a mesh. What is wrong inside it carries the mesh's own file and line; a path that leads nowhere is the field's
+/// fault.
+solid::Mesh read_named(const MeshReader& read_mesh, const std::filesystem::path& file, const std::string& path) {
+  try {
+    return read_mesh(file);
+  } catch (const InputError& error) {
+    InputFault fault = error.fault();
+    if (fault.file.empty()) fault.path = path;
+    throw InputError(fault);
+  }
+}
+
+/// Lengths beyond these bounds are a slip of units; their squares may not even be numbers.
+constexpr double kSmallest = 1e-9, kLargest = 1e6;  // [m]
+
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh) {
   const std::string path = "solids." + name;
   SolidModel model;
@@ -130,12 +145,18 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   }
   require_positive(solid.scale, path + ".scale", "0.001 if the mesh is in millimetres");
 
-  solid::Mesh mesh = read_mesh(solid.mesh.is_absolute() ? solid.mesh : scene.folder / solid.mesh);
+  solid::Mesh mesh =
+      read_named(read_mesh, solid.mesh.is_absolute() ? solid.mesh : scene.folder / solid.mesh, path + ".mesh");
   compact(mesh);
   const Eigen::Matrix3Xd scaled = solid.scale * mesh.nodes;
   const Placement pose = stand(scene, model.frame, solid.pose);
   const Eigen::Matrix3Xd world = (pose.R * scaled).colwise() + pose.p;
   const double diagonal = (world.rowwise().maxCoeff() - world.rowwise().minCoeff()).norm();
+
+  if (!(diagonal > kSmallest && diagonal < kLargest && world.allFinite())) {
+    reject(path + ".scale", text(solid.scale), "makes the body " + text(diagonal) + " m large",
+           "give the scale that turns mesh coordinates into metres, 0.001 for millimetres; check the pose");
+  }
 
   std::vector<bool> clamped(scaled.cols(), false);
   for (std::size_t b = 0; b < solid.fixed.size(); ++b) {
@@ -222,6 +243,12 @@ RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod) 
     if ((points[i] - points[i - 1]).norm() < 1e-9) {
       reject(path + ".path", text(rod.path[i]), "two neighbours are the same point", "remove one of them");
     }
+  }
+  double extent = 0.0;
+  for (const Vec3& p : points) extent = std::max(extent, p.cwiseAbs().maxCoeff());
+  if (!(extent < kLargest)) {
+    reject(path + ".path", text(extent) + " m", "a coordinate is beyond 1e6 m",
+           "check the units of the path and the pose");
   }
   const rod::Path curve(points);
   const Vec3 up = rod.up ? Vec3(rod.path_in == In::world ? *rod.up : pose.R * *rod.up) : Vec3(Vec3::UnitZ());
@@ -524,6 +551,11 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   if (!(scene.time.duration >= 0.0))
     reject("time.duration", text(scene.time.duration), "must not be negative",
            "give the length of the run, for example 2 s");
+  if (scene.time.duration / scene.time.step > 1e9) {
+    const bool step = scene.time.step < 1e-9;
+    reject(step ? "time.step" : "time.duration", text(step ? scene.time.step : scene.time.duration) + " s",
+           "makes more than 1e9 steps of " + text(scene.time.step) + " s", "shorten the run or lengthen time.step");
+  }
   if (scene.solids.empty() && scene.rods.empty()) {
     reject("", "", "the scene has neither solids nor rods",
            "add a `solids:` or `rods:` section; `sinew schema` lists all keys");
