@@ -9,7 +9,7 @@ namespace sinew::rod {
 namespace {
 
 TEST(GeometricCable, length_gradient_and_hessian_match_finite_differences) {
-  const GeometricCable cable{3, 0.1};
+  const GeometricCable cable{3, 0.1, 1e-6};
   const Placement base{lie::exp(Vec3(0.2, 0.5, -0.3)), Vec3(0.01, 0.02, 0.03)};
   Eigen::VectorXd z(10);
   z << 0.004, 0.02, 0.03, 0.01, 0.05, 0.02, 0.02, 0.08, 0.05, 0.03;
@@ -25,7 +25,7 @@ TEST(GeometricCable, length_gradient_and_hessian_match_finite_differences) {
 }
 
 TEST(GeometricCable, a_first_point_at_the_base_has_no_singularity) {
-  const GeometricCable cable{2, 0.1};
+  const GeometricCable cable{2, 0.1, 1e-6};
   Eigen::VectorXd z = Eigen::VectorXd::Zero(7);
   z[4] = 0.1;
   const CableLength length = cable_length(cable, {}, z);

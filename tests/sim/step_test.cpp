@@ -172,6 +172,27 @@ TEST(Step, geometric_cable_bends_like_a_rod_that_hardly_resists) {
   EXPECT_NEAR(b.states.back().tensions[0], b.states.back().actuators[0], 1e-3 * b.states.back().tensions[0]);
 }
 
+TEST(Step, geometric_cable_along_a_curved_path_starts_at_rest) {
+  Scene scene = test::cable_block(1 * mm, 0.01);
+  Rod& rod = scene.rods[0].second;
+  rod.cable = Cable::geometric;
+  rod.path = {Vec3(0, 5 * mm, 3 * mm), Vec3(20 * mm, 5 * mm, 8 * mm), Vec3(40 * mm, 5 * mm, 3 * mm),
+              Vec3(60 * mm, 5 * mm, 8 * mm)};
+  Slide first = scene.couplings[0];
+  first.anchor_tip = AnchorTip::position;
+  first.points = std::vector<double>{45 * mm, build(scene, test::read_block).points.back().abscissa};
+  scene.couplings = {first};
+  const Model model = build(scene, test::read_block);
+  State state = initial_state(model);
+  Workspace workspace = make_workspace(model);
+  const StepResult still = step(model, workspace, {0.0}, state, 0.01);
+  ASSERT_EQ(still.report.status, Status::converged);
+  EXPECT_LT((test::tip(model, still.next) - test::tip(model, state)).norm(), 1e-12);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done);
+  EXPECT_GT(trace.states.back().actuators[0], 0.01);
+}
+
 TEST(Step, turning_the_base_of_a_straight_round_cable_costs_nothing) {
   // Anchored by position only, the cable's tip is free to turn.
   Scene scene = test::cable_block();

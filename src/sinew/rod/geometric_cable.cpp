@@ -7,7 +7,7 @@ namespace sinew::rod {
 CableLength cable_length(const GeometricCable& cable, const Placement& base, const Eigen::VectorXd& z) {
   const int n = cable.coordinates();
   CableLength length{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
-  const double rounding = 1e-5 * cable.length;
+  const double rounding = cable.rounding;
   const Vec3 axis = base.R.col(0);
   for (int i = 0; i < cable.points; ++i) {
     const int to = 1 + 3 * i, from = to - 3;

@@ -11,12 +11,13 @@ namespace sinew::rod {
 
 struct GeometricCable {
   int points = 0;
-  double length = 0.0;  ///< [m] kept constant
+  double length = 0.0;    ///< [m] kept constant
+  double rounding = 0.0;  ///< [m] segments are rounded off below this: a first point may start at the base
   int coordinates() const { return 1 + 3 * points; }
 };
 
 /// Length of the polyline from the base, moved out by d along -x of its placement, through the points; its gradient and
-/// Hessian with respect to z. Segments are rounded off below 1e-5 of the length: a first point may start at the base.
+/// Hessian with respect to z.
 struct CableLength {
   double value = 0.0;
   Eigen::VectorXd gradient;

@@ -466,15 +466,38 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
   rod.rod.base.push_back(axis);
 }
 
+/// A geometric cable runs through its points in the order of their abscissae, whatever couplings they belong to. Its
+/// length is that of the polyline, which cuts the corners of a curved path.
+void number_cable_points(Model& model, int number) {
+  RodModel& rod = model.rods[number];
+  std::vector<PointModel*> points;
+  for (PointModel& point : model.points) {
+    if (point.rod == number) points.push_back(&point);
+  }
+  if (points.empty()) {
+    reject("rods." + rod.name + ".cable", "geometric", "a geometric cable needs a coupling that it runs through",
+           "add `slide: {rod: " + rod.name + ", ...}` or use `cable: cosserat`");
+  }
+  std::stable_sort(points.begin(), points.end(),
+                   [](const PointModel* a, const PointModel* b) { return a->abscissa < b->abscissa; });
+  rod.cable.points = static_cast<int>(points.size());
+  rod.cable.rounding = 1e-5 * rod.cable.length;
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(rod.cable.coordinates());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    points[k]->cable_point = static_cast<int>(k);
+    const solid::Body& body = model.solids[points[k]->solid].body;
+    z.segment<3>(static_cast<Eigen::Index>(1 + 3 * k)) = solid::position(points[k]->where, body.tetrahedra, body.rest);
+  }
+  rod.cable.length = rod::cable_length(rod.cable, rod.base, z).value;
+}
+
 /// Numbers of all reduced unknowns and rows.
 void number_unknowns(Model& model) {
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     RodModel& rod = model.rods[i];
     rod.offset = model.reduced;
     if (rod.geometric) {
-      for (PointModel& point : model.points) {
-        if (point.rod == static_cast<int>(i)) point.cable_point = rod.cable.points++;
-      }
+      number_cable_points(model, static_cast<int>(i));
       rod.length_row = model.rows++;
     }
     model.reduced += rod.coordinates();
