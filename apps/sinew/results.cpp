@@ -9,6 +9,7 @@
 #include "sinew/io/picture.hpp"
 #include "sinew/io/signals_csv.hpp"
 #include "sinew/io/vtu.hpp"
+#include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
 
 namespace sinew::app {
@@ -55,6 +56,19 @@ Json sizes_json(const Model& model) {
           {"reduced_unknowns", model.reduced}};
 }
 
+/// Views made again from a recording: how the run stopped and what its steps cost stand only in the report of the run
+/// itself.
+void keep_what_no_recording_holds(const std::filesystem::path& path, Json& report) {
+  std::ifstream stream(path);
+  const Json earlier = Json::parse(stream, nullptr, false);
+  if (!earlier.is_object() || earlier.value("inputs_hash", "") != report["inputs_hash"] || !earlier.contains("end"))
+    return;
+  if (earlier["end"].value("time_s", -1.0) != report["end"]["time_s"]) return;  // the recording went on since
+  for (const char* key : {"end", "time_per_step", "warnings", "summary"}) {
+    if (earlier.contains(key)) report[key] = earlier[key];
+  }
+}
+
 void write_report(const std::filesystem::path& path, const LoadedScene& loaded, const io::Recording& recording,
                   const RunSummary& summary) {
   Json report;
@@ -63,7 +77,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
   report["inputs_hash"] = recording.header.inputs_hash;
   for (const auto& [name, hash] : loaded.inputs) report["inputs"].push_back({{"file", name}, {"xxh3_128", hash}});
   report["sizes"] = sizes_json(loaded.model);
-  report["warnings"] = loaded.model.warnings;
+  report["warnings"] = summary.warnings;
   report["end"] = {{"how", summary.end}, {"time_s", recording.steps.empty() ? 0.0 : recording.steps.back().time}};
   if (summary.end == "numerical_stop") {
     report["end"]["status"] = to_string(summary.failure.status);
@@ -90,6 +104,8 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
                        {"largest_violation_m", violation},
                        {"gap_at_dropped_points_m", gap}};
   if (!summary.times.empty()) {
+    report["summary"]["steps_with_rotated_tangent"] = summary.rotated;
+    report["summary"]["steps_with_repeated_rows"] = summary.redundant;
     report["time_per_step"] = {{"forces", stage_json(summary.times, &StageTimes::forces)},
                                {"assembly", stage_json(summary.times, &StageTimes::assembly)},
                                {"factor", stage_json(summary.times, &StageTimes::factor)},
@@ -97,6 +113,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
                                {"rods", stage_json(summary.times, &StageTimes::rods)},
                                {"solve", stage_json(summary.times, &StageTimes::solve)}};
   }
+  if (summary.end == "unfinished" || summary.times.empty()) keep_what_no_recording_holds(path, report);
   report["steps"] = Json::array();
   for (const io::RecordedStep& step : recording.steps) {
     report["steps"].push_back({{"time_s", step.time},
@@ -118,13 +135,17 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
 
   // About 100 frames a run, or one per `view.interval`; the last state always.
   const std::size_t count = recording.steps.size();
-  std::size_t stride = std::max<std::size_t>(1, (count + 99) / 100);
-  if (model.scene.view.interval > 0.0)
-    stride = std::max<std::size_t>(
-        1, static_cast<std::size_t>(std::lround(model.scene.view.interval / model.scene.time.step)));
+  const double duration = static_cast<double>(grid_steps(model.scene)) * model.scene.time.step;
+  const double interval =
+      model.scene.view.interval > 0.0 ? model.scene.view.interval : std::max(model.scene.time.step, duration / 100.0);
+  if (std::filesystem::exists(folder / "paraview" / "run.pvd"))
+    std::filesystem::remove_all(folder / "paraview");  // of an earlier run
   io::SeriesWriter series(folder / "paraview");
+  double next = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i % stride != 0 && i + 1 != count) continue;
+    const double time = recording.steps[i].time;
+    if (time < next - 1e-9 * duration && i + 1 != count) continue;
+    while (next <= time + 1e-9 * duration) next += interval;
     series.add(snapshot(model, unpack(model, recording.steps[i].state), recording.steps[i].status));
   }
   series.finish();

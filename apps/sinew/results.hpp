@@ -13,9 +13,12 @@ namespace sinew::app {
 
 /// How a run ended, for report.json and for people.
 struct RunSummary {
-  std::string end = "done";       ///< done, numerical_stop, interrupted, or unfinished (from a recording alone)
-  StepReport failure;             ///< if it stopped
-  std::vector<StageTimes> times;  ///< of each step made by this program; none for recorded ones
+  std::string end = "done";           ///< done, numerical_stop, interrupted, or unfinished (from a recording alone)
+  StepReport failure;                 ///< if it stopped
+  std::vector<std::string> warnings;  ///< of the model and of the run
+  std::vector<StageTimes> times;      ///< of each step made by this program; none for recorded ones
+  int rotated = 0;                    ///< of those, steps in which the rotated tangent stood in for the exact one
+  int redundant = 0;                  ///< of those, steps whose rows repeated each other
 };
 
 std::filesystem::path recording_path(const std::filesystem::path& folder);

@@ -30,6 +30,29 @@ std::string end_word(RunEnd end) {
   return "";
 }
 
+/// What a person should know about the state a run ended in.
+std::vector<std::string> warnings_of(const Model& model, const State& state) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < model.couplings.size(); ++i) {
+    bool any = false, on = false;
+    for (std::size_t k = 0; k < model.points.size(); ++k) {
+      if (model.points[k].coupling != static_cast<int>(i)) continue;
+      any = true;
+      on |= state.points[k].on;
+    }
+    if (any && !on)
+      warnings.push_back(
+          fmt::format("couplings.{}: the rod has left the body, none of its points is on it any more", i));
+  }
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    if (model.rods[i].geometric && state.tensions[i] < 0.0) {
+      warnings.push_back(fmt::format("rods.{}: the geometric cable pushes with {:.3g} N; a real one would go slack",
+                                     model.rods[i].name, -state.tensions[i]));
+    }
+  }
+  return warnings;
+}
+
 /// Steps from a state to the end, records them, writes the views, tells the user; returns the exit code.
 int run_and_record(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
                    io::RecordingWriter writer, bool quiet) {
@@ -37,6 +60,15 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   const double duration = static_cast<double>(grid_steps(model.scene)) * model.scene.time.step;
   Progress progress("sinew " + loaded.file.path.filename().string(), duration, quiet);
   RunSummary summary;
+  summary.warnings = model.warnings;
+  for (const ActuatorModel& actuator : model.actuators) {
+    if (std::holds_alternative<External>(actuator.drive)) {
+      summary.warnings.push_back("actuators." + actuator.name +
+                                 ": driven from outside, which this program cannot; it stays at 0");
+    }
+  }
+  for (const std::string& warning : summary.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  State last = start;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const RunEnd end = run(
@@ -44,12 +76,19 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
       [&](const State& state, const StepReport& report) {
         writer.append(recorded(model, state, report));
         summary.times.push_back(report.times);
+        summary.rotated += report.rotated ? 1 : 0;
+        summary.redundant += report.redundant ? 1 : 0;
+        last = state;
         progress.update(state.time, fmt::format("t = {:.3f} s", state.time));
         return !interrupted.load();
       },
       &summary.failure);
   summary.end = end_word(end);
 
+  for (const std::string& warning : warnings_of(model, last)) {
+    summary.warnings.push_back(warning);
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
   const io::Recording recording = io::read_recording(recording_path(folder));
   progress.finish(fmt::format("{:.6g} s simulated, {} steps", recording.steps.back().time, recording.steps.size() - 1));
   const std::vector<std::string> files = write_views(folder, loaded, recording, summary);
@@ -124,7 +163,6 @@ int run_scene(const RunOptions& options) {
   header.signal_names = signal_names(loaded.model);
   io::RecordingWriter writer = io::RecordingWriter::create(path, header);
   writer.append(recorded(loaded.model, start, StepReport{}));
-  for (const std::string& warning : loaded.model.warnings) fmt::print(stderr, "warning: {}\n", warning);
   return run_and_record(loaded, start, options.output, std::move(writer), options.quiet);
 }
 
@@ -141,6 +179,7 @@ int export_run(const std::filesystem::path& folder) {
   RunSummary summary;
   const bool whole =
       !recording.steps.empty() && recording.steps.back().time >= loaded.model.scene.time.duration * (1.0 - 1e-9);
+  summary.warnings = loaded.model.warnings;
   summary.end = whole ? "done" : "unfinished";
   fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "",
              recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);

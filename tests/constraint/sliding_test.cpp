@@ -127,8 +127,9 @@ TEST(Independent, keeps_a_spanning_set_and_takes_the_first_first) {
   auto kept = independent_rows(A * A.transpose(), 1e-6);
   std::sort(kept.begin(), kept.end());
   EXPECT_EQ(kept, (std::vector<int>{0, 1, 3}));
-  EXPECT_EQ(independent_rows(A * A.transpose(), 1e-6, 2)[0], 2);
+  EXPECT_EQ(independent_rows(A * A.transpose(), 1e-6, 3).size(), 4u);  // forced ones stay even if they repeat others
   EXPECT_TRUE(independent_rows(Eigen::MatrixXd::Zero(2, 2), 1e-6).empty());
+  EXPECT_EQ(independent_rows(Eigen::MatrixXd::Zero(2, 2), 1e-6, 1), std::vector<int>{0});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 namespace sinew::linalg {
 
 bool SparseCholesky::factor(const Matrix& A) {
+  if (!Eigen::Map<const Eigen::VectorXd>(A.valuePtr(), A.nonZeros()).allFinite()) return false;
   llt_.factorize(A);
   return llt_.info() == Eigen::Success;
 }

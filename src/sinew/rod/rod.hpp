@@ -1,7 +1,8 @@
 // A discrete Cosserat rod: N sections, the strain constant along each, some of the six strains free.
 //
-//     xi = B q + xi_bar            the strain of a section from its coordinates      (equation home of II-A, once:
-//     strain()) g' = g hat(xi)               integrated exactly over a section                 (3), (4): rod/kinematics
+//     xi = B q + xi_bar      strain(): a section's strain from its coordinates, the one home of this equation
+//
+//     g' = g hat(xi)         rod/kinematics: integrated exactly over a section, (3) and (4)
 //
 // The maths is in README.md of this folder.
 #pragma once

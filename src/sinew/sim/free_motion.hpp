@@ -25,7 +25,7 @@ struct SolidForces {
   double largest = 0.0;  ///< [N] largest at a node
   double scale = 0.0;    ///< [N] largest single contribution at a node
 };
-SolidForces solid_forces(const StepContext& context, const State& iterate, int solid);
+SolidForces solid_forces(const StepContext& context, const State& iterate, int number);
 
 /// The volume's linear response, A dx = -r + H^T dlambda, half solved:
 ///     y = -L^-1 P r,   X = L^-1 P H^T   so that   H dx = X^T y + X^T X dlambda,   dx = P^T L^-T (y + X dlambda).
@@ -38,10 +38,10 @@ struct FreeMotion {
   bool ok = false;
 };
 FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate,
-                       const SolidForces& forces, int solid, solid::Tangent kind, StageTimes& times);
+                       const SolidForces& forces, int number, solid::Tangent kind, StageTimes& times);
 
 /// Correction: 3 x nodes displacement of the volume (zero at clamped nodes) once the multipliers' increments are known.
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
-                                  int solid, const Eigen::VectorXd& dlambda);
+                                  int number, const Eigen::VectorXd& dlambda);
 
 }  // namespace sinew

@@ -205,6 +205,9 @@ double largest_turn(const StepContext& context, const Eigen::VectorXd& dz) {
   double turn = 0.0;
   for (const RodModel& model : context.model.rods) {
     if (model.geometric) continue;
+    for (int i = 0; i < model.rod.base_coordinates(); ++i) {
+      if (model.rod.base[i] == rod::BaseAxis::rotation) turn = std::max(turn, std::abs(dz[model.offset + i]));
+    }
     for (int i = 0; i < model.rod.sections(); ++i) {
       for (int c = 0; c < model.rod.strains(); ++c) {
         if (model.rod.basis[c] >= 3) continue;

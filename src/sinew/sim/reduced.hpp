@@ -10,8 +10,9 @@ namespace sinew {
 struct Reduced {
   solve::CoupledProblem problem;  ///< W still zero
   double largest = 0.0;           ///< [N] largest unbalanced generalised force, by its lever arm
-  double scale = 0.0;             ///< [N] largest force that acts on a rod
-  double violation = 0.0;         ///< [m] largest violation of a row
+  double scale = 0.0;      ///< [N] what residuals are measured against: the largest of elastic, sliding and motor
+                           ///< forces, and of the sums of inertia and weight of a rod
+  double violation = 0.0;  ///< [m] largest violation of a row
 };
 
 /// Linearises rods, sliding points, anchors, motors and cable lengths at an iterate.
@@ -24,7 +25,7 @@ void add_compliance(const StepContext& context, const std::vector<FreeMotion>& f
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate);
 
-/// Largest rotation [rad] of a rod's section, relative to its length, that a solution asks for.
+/// Largest rotation [rad] of a rod's section or base that a solution asks for.
 double largest_turn(const StepContext& context, const Eigen::VectorXd& dz);
 
 }  // namespace sinew

@@ -4,6 +4,24 @@
 
 namespace sinew {
 
+namespace {
+
+/// What the motors are told part of the way to `end`: between where they are and where they shall be. A jump of the
+/// command (a constant from the start, say) is so spread over the parts of a halved step.
+Command command_part(const Model& model, const State& state, Command end, double part) {
+  if (part >= 1.0) return end;
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    const ActuatorModel& actuator = model.actuators[i];
+    const double now = actuator.row < 0
+                           ? state.actuators[i]
+                           : state.rods[actuator.rod].q[actuator.unknown - model.rods[actuator.rod].offset];
+    end[i] = now + part * (end[i] - now);
+  }
+  return end;
+}
+
+}  // namespace
+
 StepResult advance(const Model& model, Workspace& workspace, const State& state) {
   const double h = model.scene.time.step;
   const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
@@ -16,7 +34,8 @@ StepResult advance(const Model& model, Workspace& workspace, const State& state)
     if (part > whole * (1.0 + 1e-9)) continue;  // already tried, from further back
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
-    result = step(model, workspace, command_at(model, time), state, lands ? whole : part);
+    result = step(model, workspace, command_part(model, state, command_at(model, to), lands ? 1.0 : part / whole),
+                  state, lands ? whole : part);
     if (!accepted(result.report.status)) continue;
     result.next.time = time;
     if (lands) ++result.next.grid;
@@ -25,7 +44,7 @@ StepResult advance(const Model& model, Workspace& workspace, const State& state)
   return result;
 }
 
-long grid_steps(const Scene& scene) { return std::lround(scene.time.duration / scene.time.step); }
+long grid_steps(const Scene& scene) { return std::lround(std::ceil(scene.time.duration / scene.time.step - 1e-6)); }
 
 RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure) {
   Workspace workspace = make_workspace(model);

@@ -14,7 +14,7 @@ constexpr int kHalvings = 5;
 /// how far is the state, so a run continued from a recorded state makes the same steps. On failure `next` is `state`.
 StepResult advance(const Model& model, Workspace& workspace, const State& state);
 
-/// Steps of the whole grid: duration / step, rounded to the nearest whole one.
+/// Steps of the whole grid: duration / step, rounded up to a whole number.
 long grid_steps(const Scene& scene);
 
 enum class RunEnd { done, stopped, interrupted };

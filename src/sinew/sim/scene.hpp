@@ -1,5 +1,5 @@
 // The scene: plain data, what the user wrote, in SI. It is read from YAML by io/scene_file or filled in by hand, and is
-// judged as a whole only by `build` (sim/model). Defaults stand here and nowhere else.
+// judged as a whole only by `build` (sim/model). Defaults stand here.
 #pragma once
 
 #include <Eigen/Core>

@@ -35,7 +35,8 @@ std::string_view explain(Status status) {
       return "Newton did not reach its tolerance. Try a smaller time step, a slower motion, or more stiffness damping "
              "(rayleigh).";
     case Status::singular:
-      return "A matrix could not be factored: the body has collapsed or nothing holds a motion. Look at the last "
+      return "A matrix could not be factored: the body has collapsed, or nothing holds a motion (a massless rod that "
+             "no coupling ties, driven by a force). Look at the last "
              "picture; try a smaller step.";
     case Status::diverged:
       return "Numbers grew without bound. Try a smaller time step or a slower motion.";

@@ -32,7 +32,7 @@ Workspace make_workspace(const Model& model) {
 
 namespace {
 
-/// First guess of the end of the step: where the start is, carried along by moving frames; known motor forces put in.
+/// First guess of the end of the step: where the start is, carried along by moving frames.
 State first_guess(const StepContext& context) {
   State guess = context.start;
   for (std::size_t i = 0; i < guess.solids.size(); ++i) {
@@ -140,7 +140,10 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     }
     report.residual = scale > 0.0 ? largest / scale : 0.0;
     report.violation = reduced.violation;
-    if (!std::isfinite(largest) || !std::isfinite(reduced.violation))
+    const bool finite_forces =
+        std::all_of(forces.begin(), forces.end(), [](const SolidForces& f) { return f.r.allFinite(); }) &&
+        reduced.problem.r.allFinite() && reduced.problem.c.allFinite();
+    if (!finite_forces || !std::isfinite(largest) || !std::isfinite(reduced.violation))
       return fail(Status::diverged, "forces are not finite");
     const double rounding = 1e-14 * stiffness * model.size;
     const bool met =

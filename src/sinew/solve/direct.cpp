@@ -7,7 +7,7 @@ namespace sinew::solve {
 
 namespace {
 
-/// Symmetric scaling: every row's and column's largest entry near one (Ruiz, three sweeps).
+/// Symmetric scaling: every row's and column's largest entry near one (Ruiz, four sweeps).
 Eigen::VectorXd equilibrate(Eigen::MatrixXd& K) {
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(K.rows());
   for (int sweep = 0; sweep < 4; ++sweep) {

@@ -1,0 +1,53 @@
+// The parts of build(): each judges one kind of object of a scene and adds it to the model. Only sim/build_*.cpp and
+// sim/model.cpp include this.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sinew/error/input_error.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::building {
+
+/// Numbers and vectors as messages show them.
+std::string text(double value);
+std::string text(const Vec3& v);
+
+/// Throws InputError about a field.
+[[noreturn]] void reject(const std::string& path, const std::string& value, const std::string& rule,
+                         const std::string& remedy);
+void require_positive(double value, const std::string& path, const std::string& remedy);
+
+/// Number of the entry of this name, or a rejection that lists the known ones.
+template <class T>
+int find(const Named<T>& entries, const std::string& name, const std::string& path, const std::string& kind) {
+  std::string known;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].first == name) return static_cast<int>(i);
+    known += (known.empty() ? "" : ", ") + entries[i].first;
+  }
+  reject(path, name, "no " + kind + " of this name", known.empty() ? "the scene has no " + kind : "known: " + known);
+}
+
+int find_frame(const Scene& scene, const std::optional<std::string>& name, const std::string& path);
+
+/// The frame's placement at t = 0, after the object's own pose.
+Placement stand(const Scene& scene, int frame, const Pose& pose);
+
+/// Lengths beyond these bounds are a slip of units; their squares may not even be numbers.
+constexpr double kSmallest = 1e-9, kLargest = 1e6;  // [m]
+
+SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh);
+RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
+
+/// The points of the path of a rod, in the world.
+std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod);
+
+/// The element that carries x, rejected beyond the reach.
+solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
+                                  const std::string& path, const std::string& what);
+
+void build_coupling(Model& model, int number, const Slide& slide);
+
+}  // namespace sinew::building
