@@ -81,6 +81,40 @@ TEST_P(Tangent, matches_finite_differences) {
 INSTANTIATE_TEST_SUITE_P(Reduced, Tangent,
                          testing::Combine(testing::Bool(), testing::Values(0.0, 1e-8, 1e-5, 0.1, 10.0)));
 
+TEST(Build, an_anchor_is_kept_where_nothing_else_could_be) {
+  // In a clamped region, on a rod that can only stretch: no row across it says anything, the anchor's row along it
+  // does.
+  Scene scene = test::cable_block();
+  scene.solids[0].second.fixed[0].upper = Vec3(61 * test::mm, 11 * test::mm, 4 * test::mm);
+  scene.rods[0].second.path = {Vec3(0, 5 * test::mm, 3 * test::mm), Vec3(60 * test::mm, 5 * test::mm, 3 * test::mm)};
+  scene.rods[0].second.strains = {Strain::elongation};
+  scene.couplings[0].points = std::vector<double>{60 * test::mm};
+  scene.solids[0].second.fixed[0].upper.z() = 6 * test::mm;
+  const Model model = build(scene, test::read_block);
+  EXPECT_EQ(model.couplings[0].kept, 1);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  const double EA = model.rods[0].rod.stiffness[0][3];
+  EXPECT_NEAR(trace.states.back().actuators[0], EA * 2e-3 / 60e-3, 1e-6 * EA);
+}
+
+TEST(Build, a_second_coupling_does_not_repeat_the_rows_of_the_first) {
+  Scene scene = test::cable_block();
+  scene.couplings.push_back(scene.couplings[0]);
+  scene.couplings[1].anchor_tip = AnchorTip::none;
+  const Model model = build(scene, test::read_block);
+  EXPECT_EQ(model.couplings[0].kept, 5);
+  EXPECT_EQ(model.couplings[1].kept, 0);
+}
+
+TEST(Build, a_geometric_cable_that_nothing_holds_is_refused) {
+  Scene scene = test::cable_block();
+  scene.rods[0].second.cable = Cable::geometric;
+  EXPECT_NO_THROW(build(scene, test::read_block));
+  scene.actuators.clear();
+  EXPECT_THROW(build(scene, test::read_block), InputError);
+}
+
 TEST(Build, points_and_outputs_beyond_the_reach_are_refused_and_within_it_extrapolated) {
   Scene scene = test::cable_block();
   scene.outputs[0].second.point.x = Vec3(63e-3, 5e-3, 5e-3);

@@ -324,6 +324,31 @@ TEST(Advance, a_step_that_does_not_converge_is_halved_and_meets_the_grid_again) 
   }
 }
 
+TEST(Advance, a_jump_of_the_command_is_spread_over_the_parts_of_a_halved_step) {
+  Scene scene = test::cable_block();
+  scene.actuators[0].second.drive = Table{{0.0}, {12 * mm}};  // a fifth of the block's length, from the start
+  scene.newton.limit = 8;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  EXPECT_GT(trace.states.size(), 21u);  // halved at the start
+  EXPECT_GT(trace.states[1].rods[0].q[0], 0.1 * mm);
+  EXPECT_LT(trace.states[1].rods[0].q[0], 11 * mm);
+  EXPECT_NEAR(trace.states.back().rods[0].q[0], 12 * mm, 1e-12);
+}
+
+TEST(Advance, the_grid_covers_the_whole_duration) {
+  Scene scene;
+  scene.time = {0.01, 2.0};
+  EXPECT_EQ(grid_steps(scene), 200);
+  scene.time.duration = 0.015;
+  EXPECT_EQ(grid_steps(scene), 2);
+  scene.time.duration = 0.004;
+  EXPECT_EQ(grid_steps(scene), 1);
+  scene.time.duration = 0.0;
+  EXPECT_EQ(grid_steps(scene), 0);
+}
+
 TEST(Advance, halving_ends_after_five_times) {
   Scene scene = test::cable_block(6 * mm, 0.3);
   scene.newton.limit = 2;
