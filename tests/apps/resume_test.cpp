@@ -312,6 +312,28 @@ TEST_F(NumericalStop, NumbersOutOfRangeKeepTheStart) {
   expect_stop(scene, {"--set", "gravity=[0, 0, 1e300]"}, {"diverged"});
 }
 
+TEST_F(NumericalStop, IsStillKnownAfterAnExport) {
+  const SceneFolder scene;
+  ASSERT_EQ(sinew(scene.run("out", {"--set", "gravity=[0, 0, 1e300]"})).code, 3);
+  const nlohmann::json before = report_of(scene / "out");
+  ASSERT_EQ(sinew(scene.export_of("out")).code, 0);
+  EXPECT_EQ(report_of(scene / "out")["end"], before["end"]);
+}
+
+TEST(Views, ParaViewFramesFollowTheTimeAndOldOnesGo) {
+  const SceneFolder scene;
+  const auto frames = [&scene] {
+    int count = 0;
+    for (const std::string& file : files_below(scene / "out")) count += file.find("paraview/finger_") == 0 ? 1 : 0;
+    return count;
+  };
+  ASSERT_EQ(sinew(scene.run("out", {"--set", "view.interval=20 ms"})).code, 0);
+  EXPECT_EQ(frames(), 11);  // 0, 20, .. 200 ms
+  ASSERT_EQ(sinew(scene.run("out", {"--force", "--set", "view.interval=20 ms", "--set", "time.duration=70 ms"})).code,
+            0);
+  EXPECT_EQ(frames(), 5);  // 0, 20, 40, 60 and the last, 70 ms
+}
+
 TEST_F(NumericalStop, IsTheSameWhenResumed) {
   const SceneFolder scene;
   const Arguments pull = {"--set", "newton={limit: 6}", "--set",
