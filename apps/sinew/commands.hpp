@@ -21,7 +21,7 @@ struct RunOptions {
 
 int run_scene(const RunOptions& options);
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
-int describe_mesh(const std::filesystem::path& mesh);
+int describe_mesh(const std::filesystem::path& path);
 int export_run(const std::filesystem::path& folder);
 int print_schema();
 

@@ -36,7 +36,7 @@ Vec3 axis_across(const Vec3& direction) {
 /// Direction of least extent, of points given about their centre and of size 1.
 Vec3 shortest_axis(const Mat3& covariance) {
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(covariance);
-  const Vec3 spread = principal.eigenvalues();
+  const Vec3& spread = principal.eigenvalues();
   const Vec3 longest = principal.eigenvectors().col(2);
   if (!(spread(2) > 0.0)) return Vec3::UnitZ();
   Vec3 normal = principal.eigenvectors().col(0);

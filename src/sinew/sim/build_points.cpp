@@ -11,7 +11,7 @@ namespace sinew::building {
 
 solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
                                   const std::string& path, const std::string& what) {
-  const solid::EmbeddedPoint point = solid::embed(solid.body.rest, solid.body.tetrahedra, x);
+  solid::EmbeddedPoint point = solid::embed(solid.body.rest, solid.body.tetrahedra, x);
   const double diagonal = (solid.body.rest.rowwise().maxCoeff() - solid.body.rest.rowwise().minCoeff()).norm();
   const double limit = reach.value_or(0.1 * diagonal);
   if (point.distance > limit) {
