@@ -12,6 +12,19 @@ namespace sinew::test {
 
 inline constexpr double mm = 1e-3;
 
+/// Ties the rod "cable" to a solid at so many points, anchors its tip, and pulls it.
+inline void tie_and_pull(Scene& scene, const std::string& solid, int points, double pull, double rate) {
+  Slide slide;
+  slide.rod = "cable";
+  slide.solid = solid;
+  slide.points = points;
+  scene.couplings.push_back(slide);
+  Actuator actuator;
+  actuator.rod = "cable";
+  actuator.drive = Table{{0.0, pull / rate}, {0.0, pull}};
+  scene.actuators.emplace_back("pull", actuator);
+}
+
 /// The comparison scene: the public finger mesh turned about y, a straight massless cable of 81 mm along +x from the
 /// origin in 8 sections tied at 9 points, no gravity, pulled at `rate`. `rigid` moves everything through poses.
 inline Scene comparison_finger(const std::filesystem::path& mesh, double pull, double rate = 0.01,
@@ -45,15 +58,7 @@ inline Scene comparison_finger(const std::filesystem::path& mesh, double pull, d
   cable.section.radius = 0.5 * mm;
   cable.material = {5e9, 0.45, 0.0};
   scene.rods.emplace_back("cable", cable);
-  Slide slide;
-  slide.rod = "cable";
-  slide.solid = "finger";
-  slide.points = 9;
-  scene.couplings.push_back(slide);
-  Actuator actuator;
-  actuator.rod = "cable";
-  actuator.drive = Table{{0.0, pull / rate}, {0.0, pull}};
-  scene.actuators.emplace_back("pull", actuator);
+  tie_and_pull(scene, "finger", 9, pull, rate);
   Output tip;
   tip.solid = "finger";
   // World (85.5, -5.5, 0.5) mm seen from the mesh.
@@ -108,15 +113,7 @@ inline Scene cable_block(double pull = 2 * mm, double rate = 0.02) {
   cable.section.radius = 0.3 * mm;
   cable.material = {2e9, 0.4, 1100.0};
   scene.rods.emplace_back("cable", cable);
-  Slide slide;
-  slide.rod = "cable";
-  slide.solid = "block";
-  slide.points = 6;
-  scene.couplings.push_back(slide);
-  Actuator actuator;
-  actuator.rod = "cable";
-  actuator.drive = Table{{0.0, pull / rate}, {0.0, pull}};
-  scene.actuators.emplace_back("pull", actuator);
+  tie_and_pull(scene, "block", 6, pull, rate);
   Output tip;
   tip.solid = "block";
   tip.point.x = Vec3(60 * mm, 5 * mm, 5 * mm);
