@@ -53,11 +53,16 @@ State first_guess(const StepContext& context) {
 /// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
 /// that the end has reached again come on.
 void follow_points(const StepContext& context, State& iterate) {
+  rod::Configuration shape;  // of the rod of the last point: points of one rod stand together
+  int configured = -1;
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
     const PointModel& point = context.model.points[k];
     if (point.unknown < 0) continue;
     const RodModel& rod = context.model.rods[point.rod];
-    const rod::Configuration shape = rod::configure(rod.rod, context.bases[point.rod], iterate.rods[point.rod].q);
+    if (point.rod != configured) {
+      shape = rod::configure(rod.rod, context.bases[point.rod], iterate.rods[point.rod].q);
+      configured = point.rod;
+    }
     const Vec3 P =
         solid::position(point.where, context.model.solids[point.solid].body.tetrahedra, iterate.solids[point.solid].x);
     PointState& state = iterate.points[k];
