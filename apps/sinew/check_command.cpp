@@ -27,28 +27,35 @@ void print_solid(const SolidModel& solid) {
              1e3 * size.z(), 1e6 * volume, 1e3 * solid.body.masses.sum(), solid.body.masses.sum() / volume);
 }
 
-void print_rod(const RodModel& rod) {
-  if (rod.geometric) {
-    fmt::print("rod {}: a geometric cable of {:.5g} mm, without stiffness or mass\n", rod.name, 1e3 * rod.length());
-    return;
-  }
-  static const char* const names[] = {"torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"};
-  fmt::print("rod {}: {:.5g} mm, {} sections, {} coordinates\n", rod.name, 1e3 * rod.length(), rod.rod.sections(),
-             rod.rod.coordinates());
-  for (int strain : rod.rod.basis) {
-    fmt::print("  {:<10} stiffness {:.4g} {}\n", names[strain], rod.rod.stiffness[0][strain],
-               strain < 3 ? "N m^2" : "N");
+void print_rod(const RodModel& model) {
+  const rod::Rod& rod = model.rod;
+  fmt::print("rod {}: {:.5g} mm, {} sections, {} coordinates\n", model.name, 1e3 * rod.length(), rod.count(),
+             rod.coordinates());
+  const rod::Vec6 stiffness = rod::stiffness_at(rod.profile, 0.0).diagonal();
+  for (const rod::Mode& mode : rod.sections[0].modes) {
+    if (mode.degree > 0) continue;
+    fmt::print("  {:<10} stiffness {:.4g} {}{}\n", rod::kStrainNames[static_cast<std::size_t>(mode.strain)],
+               stiffness[mode.strain], mode.strain < 3 ? "N m^2" : "N",
+               stiffness == rod::Vec6(rod::stiffness_at(rod.profile, rod.length()).diagonal()) ? "" : " at the base");
   }
   double mass = 0.0;
-  for (const auto& point : rod.rod.masses) mass += point.mass;
+  for (const auto& point : rod.masses) mass += point.mass;
   fmt::print("  mass {:.4g} g{}\n", 1e3 * mass, mass > 0.0 ? "" : " (density 0: no inertia, no weight)");
-  if (rod.path_deviation > 1e-9 * rod.length())
-    fmt::print("  its sections stay within {:.3g} mm of the path\n", 1e3 * rod.path_deviation);
+  if (model.path_deviation > 1e-9 * rod.length())
+    fmt::print("  its sections stay within {:.3g} mm of the path\n", 1e3 * model.path_deviation);
 }
 
 void print_coupling(const Model& model, std::size_t number) {
   const CouplingFacts& facts = model.couplings[number];
-  const Slide& slide = model.scene.couplings[number];
+  if (const Tie* tie = std::get_if<Tie>(&model.scene.couplings[number])) {
+    const std::string holder = tie->solid   ? "solid " + *tie->solid
+                               : tie->other ? "rod " + *tie->other
+                               : tie->frame ? "frame " + *tie->frame
+                                            : "the ground";
+    fmt::print("coupling {}: rod {} held by {}\n", number, tie->rod, holder);
+    return;
+  }
+  const Slide& slide = std::get<Slide>(model.scene.couplings[number]);
   fmt::print("coupling {}: rod {} in solid {}: {} of {} points kept\n", number, slide.rod, slide.solid, facts.kept,
              facts.asked);
   if (facts.outside > 0) {
@@ -71,18 +78,27 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
   fmt::print("{}: {} steps of {:.4g} ms\n", scene.string(), grid_steps(model.scene), 1e3 * model.scene.time.step);
   for (const SolidModel& solid : model.solids) print_solid(solid);
   for (const RodModel& rod : model.rods) print_rod(rod);
+  for (const CableModel& cable : model.cables) {
+    fmt::print("rod {}: a geometric cable of {:.5g} mm, without stiffness or mass\n", cable.name,
+               1e3 * cable.cable.length);
+  }
   for (std::size_t i = 0; i < model.couplings.size(); ++i) print_coupling(model, i);
   for (const ActuatorModel& actuator : model.actuators) {
     static const char* const names[] = {"force", "displacement", "torque", "angle"};
     fmt::print("actuator {}: {} of rod {}, driven by {}{}\n", actuator.name,
-               actuator.motion == Motion::translation ? "translation" : "rotation", model.rods[actuator.rod].name,
+               actuator.tendon                          ? "tendon"
+               : actuator.motion == Motion::translation ? "translation"
+                                                        : "rotation",
+               actuator.line.rod >= 0 ? model.rods[actuator.line.rod].name : model.cables[actuator.line.cable].name,
                names[static_cast<int>(actuator.driven)],
                std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)" : "");
   }
   for (const std::string& warning : model.warnings) fmt::print("warning: {}\n", warning);
+  int unknowns = model.unknowns;
+  for (const RodModel& rod : model.rods) unknowns += rod.rod.strain_coordinates();
   fmt::print(
       "The scene is sound: {} unknowns of rods and points, {} constraint rows. Run it with: sinew run {} -o out\n",
-      model.reduced, model.rows, scene.string());
+      unknowns, model.rows, scene.string());
   return kDone;
 }
 

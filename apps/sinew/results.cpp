@@ -11,6 +11,7 @@
 #include "sinew/io/vtu.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/sim/view.hpp"
 
 namespace sinew::app {
 
@@ -44,16 +45,20 @@ Json sizes_json(const Model& model) {
     solids[solid.name] = {
         {"nodes", solid.body.nodes()}, {"tetrahedra", solid.body.elements()}, {"free_nodes", solid.body.free_nodes}};
   }
+  int unknowns = model.unknowns;
   for (const RodModel& rod : model.rods) {
-    rods[rod.name] = {{"length_m", rod.length()},
-                      {"sections", rod.geometric ? 0 : rod.rod.sections()},
-                      {"coordinates", rod.coordinates()}};
+    rods[rod.name] = {{"length_m", rod.rod.length()},
+                      {"sections", rod.rod.count()},
+                      {"coordinates", rod.rod.coordinates()}};
+    unknowns += rod.rod.strain_coordinates();
   }
+  for (const CableModel& cable : model.cables)
+    rods[cable.name] = {{"length_m", cable.cable.length}, {"sections", 0}, {"coordinates", cable.cable.coordinates()}};
   return {{"solids", solids},
           {"rods", rods},
           {"sliding_points", model.points.size()},
           {"rows", model.rows},
-          {"reduced_unknowns", model.reduced}};
+          {"reduced_unknowns", unknowns}};
 }
 
 /// Views made again from a recording: how the run stopped and what its steps cost stand only in the report of the run

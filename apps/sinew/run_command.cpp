@@ -44,10 +44,11 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
       warnings.push_back(
           fmt::format("couplings.{}: the rod has left the body, none of its points is on it any more", i));
   }
-  for (std::size_t i = 0; i < model.rods.size(); ++i) {
-    if (model.rods[i].geometric && state.tensions[i] < 0.0) {
+  for (const CableModel& cable : model.cables) {
+    const double tension = state.lambda[cable.length_row];
+    if (tension < 0.0) {
       warnings.push_back(fmt::format("rods.{}: the geometric cable pushes with {:.3g} N; a real one would go slack",
-                                     model.rods[i].name, -state.tensions[i]));
+                                     cable.name, -tension));
     }
   }
   return warnings;
@@ -66,6 +67,10 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
       summary.warnings.push_back("actuators." + actuator.name +
                                  ": driven from outside, which this program cannot; it stays at 0");
     }
+  }
+  for (const LoadModel& load : model.loads) {
+    if (std::holds_alternative<External>(load.factor))
+      summary.warnings.push_back("loads." + load.name + ": set from outside, which this program cannot; it stays at 0");
   }
   for (const std::string& warning : summary.warnings) fmt::print(stderr, "warning: {}\n", warning);
   State last = start;

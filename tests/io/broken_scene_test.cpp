@@ -1,4 +1,6 @@
 // What a user reads when a scene file is wrong: line, field, rule and remedy for each kind of fault.
+#include "broken_scene.hpp"
+
 #include <gtest/gtest.h>
 
 #include "full_scene.hpp"
@@ -7,13 +9,6 @@
 
 namespace sinew::io {
 namespace {
-
-/// `full_scene` with one piece of text replaced, and what is said about it. `value` empty: not compared.
-struct Broken {
-  std::string from, to;
-  int line;
-  std::string path, value, rule, remedy;
-};
 
 const std::vector<Broken> cases = {
     // Keys.
@@ -144,26 +139,7 @@ const std::vector<Broken> cases = {
 
 TEST(BrokenScene, IsRefusedWithLineFieldRuleAndRemedy) {
   EXPECT_GE(cases.size(), 40u);
-  for (const Broken& broken : cases) {
-    SCOPED_TRACE(broken.from + " -> " + broken.to);
-    std::string text = full_scene;
-    const std::size_t place = text.find(broken.from);
-    ASSERT_NE(place, std::string::npos);
-    text.replace(place, broken.from.size(), broken.to);
-    try {
-      parse_scene(text, "finger.yaml", "");
-      ADD_FAILURE() << "accepted";
-    } catch (const InputError& error) {
-      const InputFault& fault = error.fault();
-      EXPECT_EQ(fault.file, "finger.yaml");
-      EXPECT_EQ(fault.line, broken.line) << error.what();
-      EXPECT_EQ(fault.path, broken.path) << error.what();
-      EXPECT_TRUE(broken.value.empty() || fault.value == broken.value) << error.what();
-      EXPECT_NE(fault.rule.find(broken.rule), std::string::npos) << error.what();
-      EXPECT_NE(fault.remedy.find(broken.remedy), std::string::npos) << error.what();
-      EXPECT_FALSE(fault.remedy.empty()) << error.what();
-    }
-  }
+  for (const Broken& broken : cases) expect_refused(full_scene, broken);
 }
 
 TEST(BrokenScene, WithoutBodiesOrWithoutAMapIsRefused) {

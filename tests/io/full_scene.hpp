@@ -1,4 +1,4 @@
-// A scene that uses every key of the format, and what differs between its alternatives.
+// Scenes that together use every key of the format.
 #pragma once
 
 namespace sinew::io {
@@ -60,7 +60,101 @@ outputs:
   end: {rod: cable, at: 100 mm}
 )";
 
-/// The alternatives that `full_scene` leaves out, for the test of the schema.
+/// The shapes that rods have, and what acts on them.
+inline constexpr const char* rods_scene = R"(# Rods of every kind.
+analysis: static
+modes: 4
+frames: {hand: {pose: {translate: [0, 1 cm, 0]}}}
+solids: {finger: {mesh: finger.vtk, material: {young: 600 kPa, poisson: 0.45}, mass: 75 g}}
+rods:
+  spine:
+    path: [[0, 0, 0], [100 mm, 0, 0]]
+    strains: [torsion, bending_y, bending_z, elongation, shear_y, shear_z]
+    order: {torsion: 1, bending_y: 2, bending_z: 3, elongation: 4, shear_y: 5, shear_z: 0}
+    rest:
+      at: [0, 50 mm]
+      torsion: 0.5 1/m
+      bending_y: [1, 2]
+      bending_z: [0 1/m, 2 1/cm]
+      elongation: [0, 0.1]
+      shear_y: 0.01
+      shear_z: [0.02, -0.03]
+    start: path
+    base: [turn_z, x]
+    parts:
+      - {to: 20 mm, section: {circle: {radius: [2 mm, 1 mm]}}, material: {young: 1 MPa, poisson: 0.4, density: 1100}}
+      - to: 40 mm
+        section: {tube: {outer: [5 mm, 4 mm], inner: 3 mm}}
+        material: {young: 2 MPa, poisson: 0.4, density: 1200, viscosity: 300 Pa s, damping: 10 ms}
+      - {to: 60 mm, section: {ellipse: {y: 2 mm, z: 1 mm}}, material: {young: 3 MPa, poisson: 0.4, density: 1}}
+      - {to: 80 mm, section: {rectangle: {y: 4 mm, z: [2 mm, 1 mm]}}, material: {young: 4 MPa, poisson: 0, density: 1}}
+      - to: 100 mm
+        section: {stiffness: {matrix: [1, 2, 3, 4e3, 5e3, 6e3], line_density: 2 g/m, radius: 1 mm}}
+  tube:
+    path: [[0, 0, 0], [0, 100 mm, 0]]
+    order: 2
+    rest: straight
+    start: rest
+    base: free
+    section: {tube: {outer: 5 mm, inner: 4 mm}}
+    material: {young: 1 MPa, poisson: 0.4, density: 1100, viscosity: 2, damping: 1 s}
+  blade:
+    path: [[0, 0, 0], [0, 0, 100 mm]]
+    rest: {bending_z: 20 1/m}
+    base: clamped
+    section: {rectangle: {y: 4 mm, z: 2 mm}}
+    material: {young: 1 MPa, poisson: 0.4, density: 1100}
+  oval:
+    path: [[0, 0, 0], [0, 0, -100 mm]]
+    rest: path
+    section: {ellipse: {y: [2 mm, 1 mm], z: 1 mm}}
+    material: {young: 1 MPa, poisson: 0.4, density: 1100}
+  given:
+    path: [[0, 0, 0], [0, 0, 1]]
+    section:
+      stiffness:
+        matrix:
+          - [1, 0, 0, 0, 0, 0]
+          - [0, 2, 1, 0, 0, 0]
+          - [0, 1, 3, 0, 0, 10]
+          - [0, 0, 0, 4e3, 0, 0]
+          - [0, 0, 0, 0, 5e3, 0]
+          - [0, 0, 10, 0, 0, 6e3]
+        line_density: 0.1 kg/m
+        radius: 5 mm
+    material: {damping: 20 ms}
+couplings:
+  - slide: {rod: tube, solid: finger, channel: [[1 mm, 2 mm, 3 mm], [4 mm, 5 mm, 6 mm]], anchor_tip: pose}
+  - tie: {rod: spine, at: 50 mm, frame: hand, along: [z, x], about: [y]}
+  - tie: {rod: tube, solid: finger, along: [], about: [x, y, z], reach: 1 mm}
+  - tie: {rod: tube, at: 10 mm, other: blade, other_at: 20 mm}
+  - tie: {rod: oval}
+actuators:
+  lift: {rod: blade, axis: z, displacement: 1 mm}
+  roll: {rod: blade, axis: y, angle: 10 deg}
+  wire:
+    rod: spine
+    tendon: {from: 10 mm, to: 90 mm, distance: [10 mm, 5 mm], angle: [0 deg, 360 deg]}
+    tension: {times: [0, 1], values: [0, 2 N]}
+  reel: {rod: spine, tendon: {distance: 10 mm}, displacement: 5 mm}
+  hook: {rod: spine, tendon: {distance: 10 mm, angle: 90 deg}, force: external}
+loads:
+  weight: {rod: spine, force: [0, 0, -1 N]}
+  wind:
+    rod: spine
+    from: 10 mm
+    to: 50 mm
+    force: [0, 2 N/m, 0]
+    moment: [1 N, 0, 0]
+    factor: {times: [0, 1], values: [0, 3]}
+  screw: {rod: tube, at: 50 mm, moment: [20 mN m, 0, 0], follower: true, factor: external}
+  push: {rod: tube, force: [1, 0, 0], follower: false, factor: -2.5}
+outputs:
+  tip: {rod: spine, at: 100 mm, quantity: position}
+  root: {rod: spine, at: 0, quantity: moment}
+)";
+
+/// The alternatives that these two leave out, for the test of the schema.
 inline constexpr const char* other_scene = R"(
 newton: 1
 rods:

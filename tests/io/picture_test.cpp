@@ -77,7 +77,7 @@ Snapshot beam(double size = 1.0, int cubes = 8) {
     for (int k = 0; k < 4; ++k) quad(4 * i + k, 4 * i + (k + 1) % 4, 4 * i + 4 + (k + 1) % 4, 4 * i + 4 + k);
   RodSnapshot rod;
   rod.name = "cable";
-  rod.radius = 0.0015 * size;
+  rod.radius.setConstant(100, 0.0015 * size);
   rod.points.resize(3, 100);
   for (int i = 0; i < 100; ++i) rod.points.col(i) = size * Vec3(-0.04 + 0.002 * i, 0.01, 0.01);
   Snapshot snapshot;
@@ -269,7 +269,8 @@ TEST_F(Picture, takes_whatever_numbers_there_are) {
   for (const double bad : {nan, inf, 1e29, 1e300, 1e-300, 0.0}) {
     draw(rest, moved(rest, [&](const Vec3& p) -> Vec3 { return p.x() > 0.1 ? Vec3(bad, p.y(), -bad) : p; }));
     Snapshot end = moved(rest, [&](const Vec3& p) -> Vec3 { return p * bad; });
-    end.time = end.rods[0].radius = bad;
+    end.time = bad;
+    end.rods[0].radius.setConstant(bad);
     end.solids[0].rest = end.solids[0].nodes;
     draw(end, end, {.title = "", .up = Vec3(bad, 0, bad)});
     end.solids[0].tetrahedra = {{0, 1, 2, 3}, {0, 3, 2, 5}};

@@ -93,7 +93,8 @@ TEST(SceneFile, ReadsRodsAndCouplings) {
   EXPECT_EQ(cable.cable, Cable::cosserat);
   EXPECT_EQ(std::get<int>(cable.sections), 15);
   EXPECT_EQ(cable.strains, (std::vector{Strain::torsion, Strain::bending_y, Strain::bending_z}));
-  EXPECT_EQ(cable.section.radius, 0.0005);
+  EXPECT_EQ(std::get<Circle>(cable.section).radius.start, 0.0005);
+  EXPECT_EQ(std::get<Circle>(cable.section).radius.end, 0.0005);
   EXPECT_EQ(cable.material.young, 5e9);
   EXPECT_EQ(cable.material.poisson, 0.5);
   EXPECT_EQ(cable.material.density, 1100.0);
@@ -104,14 +105,16 @@ TEST(SceneFile, ReadsRodsAndCouplings) {
   EXPECT_EQ(std::get<std::vector<double>>(thread.sections), (std::vector<double>{0, 0.04, 0.1}));
 
   ASSERT_EQ(scene.couplings.size(), 2u);
-  EXPECT_EQ(scene.couplings[0].rod, "cable");
-  EXPECT_EQ(scene.couplings[0].solid, "finger");
-  EXPECT_EQ(std::get<int>(scene.couplings[0].points), 15);
-  EXPECT_EQ(scene.couplings[0].anchor_tip, AnchorTip::position);
-  EXPECT_EQ(scene.couplings[0].reach, 0.002);
-  EXPECT_EQ(std::get<std::vector<double>>(scene.couplings[1].points), (std::vector<double>{0, 0.03}));
-  EXPECT_EQ(scene.couplings[1].anchor_tip, AnchorTip::none);
-  EXPECT_FALSE(scene.couplings[1].reach);
+  const Slide& first = std::get<Slide>(scene.couplings[0]);
+  EXPECT_EQ(first.rod, "cable");
+  EXPECT_EQ(first.solid, "finger");
+  EXPECT_EQ(std::get<int>(first.points), 15);
+  EXPECT_EQ(first.anchor_tip, AnchorTip::position);
+  EXPECT_EQ(first.reach, 0.002);
+  const Slide& second = std::get<Slide>(scene.couplings[1]);
+  EXPECT_EQ(std::get<std::vector<double>>(second.points), (std::vector<double>{0, 0.03}));
+  EXPECT_EQ(second.anchor_tip, AnchorTip::none);
+  EXPECT_FALSE(second.reach);
 }
 
 TEST(SceneFile, ReadsActuatorsAndOutputs) {
@@ -176,7 +179,7 @@ TEST(SceneFile, OverridesReplaceValues) {
                                          "actuators.extra={rod: cable, force: 1 N}", "time.step=5 ms"})
                           .scene;
   EXPECT_EQ(scene.solids[0].second.material.young, 500e3);
-  EXPECT_EQ(std::get<int>(scene.couplings[0].points), 31);
+  EXPECT_EQ(std::get<int>(std::get<Slide>(scene.couplings[0]).points), 31);
   EXPECT_EQ(scene.newton.iterations, 3);
   EXPECT_EQ(scene.newton.limit, Newton{}.limit);
   EXPECT_EQ(scene.rods[1].second.up, Vec3(0, 1, 0));

@@ -30,7 +30,7 @@ const Layers kMayInclude = {
     {"error", {}},
     {"lie", {}},
     {"linalg", {}},
-    {"rod", {"lie"}},
+    {"rod", {"lie", "linalg"}},
     {"solid", {"lie"}},
     {"constraint", {"lie", "rod", "solid", "linalg"}},
     {"solve", {"linalg"}},

@@ -144,7 +144,7 @@ TEST_P(Meshing, any_sections_with_any_points_converge) {
   Scene scene = comparison_finger(kFinger, 20 * mm, 0.04);
   scene.time = {0.02, 0.6};
   scene.rods[0].second.sections = sections;
-  scene.couplings[0].points = points;
+  test::slide(scene, 0).points = points;
   Model model;
   const Trace trace = simulate(scene, &model);
   const Vec3 x = tip(model, trace.states.back()) / mm;

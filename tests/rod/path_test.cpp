@@ -6,7 +6,6 @@
 
 #include "sinew/lie/rotation.hpp"
 #include "sinew/rod/kinematics.hpp"
-#include "sinew/rod/section.hpp"
 
 namespace sinew::rod {
 namespace {
@@ -21,7 +20,7 @@ TEST(Path, straight_points_give_a_straight_rod_and_exact_length) {
   const Path path({{0, 0, 0}, {0.01, 0, 0}, {0.05, 0, 0}, {0.081, 0, 0}});
   EXPECT_NEAR(path.length(), 0.081, 1e-16);
   const Layout layout = lay_along(path, equal_ends(path.length(), 8), Vec3::UnitZ());
-  EXPECT_EQ(layout.strains.norm(), 0.0);
+  for (const Coefficients& Z : layout.strains) EXPECT_EQ(Z.norm(), 0.0);
   EXPECT_LT(layout.deviation, 1e-16);
   EXPECT_LT((layout.base.R.col(1) - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_LT((layout.base.R.col(2) + Vec3::UnitY()).norm(), 1e-15);  // z = x cross y
@@ -40,7 +39,7 @@ TEST(Path, arc_is_followed) {
   EXPECT_NEAR(path.length(), std::numbers::pi, 2e-4);
   const Layout layout = lay_along(path, equal_ends(path.length(), 12), Vec3::UnitZ());
   // x along the start, y = z of the world, z = x cross y: bending up is about z... with curvature 1.
-  EXPECT_LT((layout.strains.row(2).array() - 1.0).abs().maxCoeff(), 0.02);
+  for (const Coefficients& Z : layout.strains) EXPECT_NEAR(Z(2, 0), 1.0, 0.02);
   EXPECT_LT(layout.deviation, 2e-4);
 }
 
@@ -56,34 +55,39 @@ TEST(Path, finger_cable_that_folds_back_is_followed_without_twist) {
   for (double x : {-77.5, -62.5, -47.5, -32.5, -17.5}) points.emplace_back(x * mm, 12.5 * mm, 12.5 * mm);
   const Path path(points);
   const Layout layout = lay_along(path, equal_ends(path.length(), 60), Vec3::UnitZ());
-  EXPECT_EQ(layout.strains.row(0).norm(), 0.0);
+  for (const Coefficients& Z : layout.strains) EXPECT_EQ(Z(0, 0), 0.0);
   EXPECT_LT(layout.deviation, 0.3 * mm);
-  Rod rod;
-  rod.ends = equal_ends(path.length(), 60);
-  rod.fixed = layout.strains;
+  Discretisation cut;
+  cut.ends = equal_ends(path.length(), 60);
+  cut.rest = layout.strains;
+  const Rod rod = make_rod(cut, {});
   const Configuration shape = configure(rod, layout.base, Eigen::VectorXd());
   EXPECT_LT((shape.p.back() - points.back()).norm(), 0.3 * mm);
 }
 
-TEST(Section, round_section_has_the_textbook_stiffness) {
-  const Vec6 K = round_section_stiffness(0.5e-3, 5e9, 0.4);
-  EXPECT_NEAR(K[1], 5e9 * std::numbers::pi * 0.25 * 6.25e-14, 1e-12);  // E I = 2.454e-4 N m^2
-  EXPECT_NEAR(K[0] / K[1], 1.0 / 1.4, 1e-14);                          // G J / E I = 1 / (1 + nu)
-  EXPECT_NEAR(K[3], 5e9 * std::numbers::pi * 0.25e-6, 1e-9);
-  EXPECT_NEAR(K[4] / K[3], 6 * 1.4 / (7 + 6 * 0.4) / 2.8, 1e-14);
+TEST(Path, few_sections_of_high_degree_follow_as_well_as_many_constant_ones) {
+  std::vector<Vec3> points;  // a curve whose bending changes sign
+  for (int i = 0; i <= 40; ++i) points.emplace_back(0.01 * i, 0.02 * std::sin(0.3 * i), 0.0);
+  const Path path(points);
+  const double constant = lay_along(path, equal_ends(path.length(), 16), Vec3::UnitZ()).deviation;
+  const double cubic = lay_along(path, equal_ends(path.length(), 4), Vec3::UnitZ(), 3).deviation;
+  EXPECT_LT(cubic, 2.0 * constant);
+  EXPECT_LT(cubic, 1e-3);
 }
 
-TEST(Section, von_mises_of_pure_bending_is_the_rim_stress) {
-  Vec6 stress = Vec6::Zero();
-  stress[1] = 3.0;
-  stress[2] = 4.0;
-  EXPECT_NEAR(round_section_von_mises(0.1, stress), 5.0 * 0.1 / (std::numbers::pi * 1e-4 / 4), 1e-9);
+TEST(Path, thousands_of_sections_are_laid_in_linear_time) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 40; ++i) points.emplace_back(0.01 * i, 0.02 * std::sin(0.3 * i), 0.0);
+  const Path path(points);
+  EXPECT_LT(lay_along(path, equal_ends(path.length(), 4000), Vec3::UnitZ()).deviation, 1e-5);
 }
 
 TEST(Masses, weigh_what_the_rod_weighs_and_turn_like_its_section) {
-  const auto masses = round_rod_masses({0.0, 0.2, 1.0}, 0.01, 1100.0);
+  Discretisation cut;
+  cut.ends = {0.0, 0.2, 1.0};
+  const Rod rod = make_rod(cut, {{0.0, 1.0, SolidPart{Circle{0.01}, Circle{0.01}, 1e6, 0.4, 1100.0}}});
   double mass = 0, first = 0, inertia = 0;
-  for (const auto& point : masses) {
+  for (const MassPoint& point : rod.masses) {
     mass += point.mass;
     first += point.mass * point.s;
     inertia += point.mass * point.offset.y() * point.offset.y();
@@ -91,6 +95,15 @@ TEST(Masses, weigh_what_the_rod_weighs_and_turn_like_its_section) {
   EXPECT_NEAR(mass, 1100.0 * std::numbers::pi * 1e-4, 1e-14);
   EXPECT_NEAR(first, 0.5 * mass, 1e-14);
   EXPECT_NEAR(inertia, mass * 1e-4 / 4, 1e-18);  // m r^2 / 4
+}
+
+TEST(Masses, of_a_cone_weigh_its_volume) {
+  Discretisation cut;
+  cut.ends = {0.0, 1.0};
+  const Rod rod = make_rod(cut, {{0.0, 1.0, SolidPart{Circle{0.02}, Circle{0.01}, 1e6, 0.4, 1000.0}}});
+  double mass = 0;
+  for (const MassPoint& point : rod.masses) mass += point.mass;
+  EXPECT_NEAR(mass, 1000.0 * std::numbers::pi / 3.0 * (4e-4 + 2e-4 + 1e-4), 1e-13);
 }
 
 }  // namespace

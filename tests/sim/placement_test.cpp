@@ -54,7 +54,7 @@ TEST(Placement, rods_y_axis_is_the_worlds_up_by_default) {
 TEST(Build, points_in_a_clamped_region_are_dropped_or_met_by_the_rod) {
   Scene scene = test::cable_block();
   scene.solids[0].second.fixed[0].upper.x() = 31e-3;  // half the block is held
-  scene.couplings[0].points = 31;
+  test::slide(scene, 0).points = 31;
   const Model model = build(scene, test::read_block);
   EXPECT_EQ(model.couplings[0].no_unknown, std::vector<double>{0.0});  // at the base neither side can move
   EXPECT_GT(model.couplings[0].redundant.size(), 5u);
@@ -78,9 +78,11 @@ TEST(Build, signals_are_named_as_promised) {
   twist.drive = Table{{0.0}, {0.0}};
   scene.actuators.emplace_back("twist", twist);
   const Model model = build(scene, test::read_block);
-  EXPECT_EQ(signal_names(model), (std::vector<std::string>{"tip.x", "tip.y", "tip.z", "pull.displacement", "pull.force",
-                                                           "twist.angle", "twist.torque"}));
-  EXPECT_EQ(signal_values(model, initial_state(model)).size(), 7u);
+  EXPECT_EQ(signal_names(model),
+            (std::vector<std::string>{"tip.x", "tip.y", "tip.z", "pull.displacement", "pull.force", "twist.angle",
+                                      "twist.torque", "energy.kinetic", "energy.elastic", "energy.weight",
+                                      "energy.work", "energy.dissipated"}));
+  EXPECT_EQ(signal_values(model, initial_state(model)).size(), 12u);
 }
 
 }  // namespace

@@ -12,64 +12,107 @@
 namespace sinew {
 namespace {
 
-/// A state in the middle of things: bent rod, points off the section edges and off the rod, multipliers of order one.
+/// Everything the coupled problem is linear in, as one vector: the unknowns in the order of written_out().
+solve::CoupledSolution unit(const solve::CoupledProblem& problem, Eigen::Index at) {
+  solve::CoupledSolution u;
+  u.dz.setZero(problem.r.size());
+  u.dlambda.setZero(problem.c.size());
+  for (const auto& part : problem.chains) u.dq.emplace_back(Eigen::VectorXd::Zero(part.r.size()));
+  if (at < u.dz.size()) {
+    u.dz[at] = 1.0;
+    return u;
+  }
+  at -= u.dz.size();
+  if (at < u.dlambda.size()) {
+    u.dlambda[at] = 1.0;
+    return u;
+  }
+  at -= u.dlambda.size();
+  for (auto& dq : u.dq) {
+    if (at < dq.size()) {
+      dq[at] = 1.0;
+      return u;
+    }
+    at -= dq.size();
+  }
+  return u;
+}
+
+Eigen::VectorXd right(const solve::CoupledProblem& problem) {
+  Eigen::Index size = problem.r.size() + problem.c.size();
+  for (const auto& part : problem.chains) size += part.r.size();
+  Eigen::VectorXd b(size);
+  b.head(problem.r.size()) = -problem.r;
+  b.segment(problem.r.size(), problem.c.size()) = problem.c;
+  Eigen::Index at = problem.r.size() + problem.c.size();
+  for (const auto& part : problem.chains) {
+    b.segment(at, part.r.size()) = -part.r;
+    at += part.r.size();
+  }
+  return b;
+}
+
+/// A state in the middle of things: bent rods, points off the section edges and off the rod, multipliers of order one.
 State busy_state(const Model& model, double size) {
   State state = initial_state(model);
-  for (int i = 0; i < state.rods[0].q.size(); ++i)
-    state.rods[0].q[i] += (model.rods[0].geometric ? 1e-3 : size) * std::cos(1.3 * i);
-  if (!model.rods[0].geometric) state.rods[0].q[0] = 1e-3;
+  for (std::size_t r = 0; r < state.rods.size(); ++r) {
+    for (int i = 0; i < state.rods[r].q.size(); ++i)
+      state.rods[r].q[i] += size * std::cos(1.3 * i + 0.4 * static_cast<double>(r));
+    for (int i = 0; i < model.rods[r].rod.base_coordinates(); ++i)
+      state.rods[r].q[i] = (model.rods[r].rod.base[i].turns ? 0.1 : 1e-3) * (1 + i);
+  }
+  for (auto& cable : state.cables) {
+    for (int i = 0; i < cable.z.size(); ++i) cable.z[i] += 1e-3 * std::cos(1.3 * i);
+  }
   for (std::size_t k = 0; k < state.points.size(); ++k) {
     if (model.points[k].unknown >= 0) state.points[k].s += 1.3e-3;
-    state.points[k].lambda = Vec3(std::cos(1.0 * static_cast<double>(k)), std::sin(2.0 * static_cast<double>(k)), 0.5);
   }
-  state.tensions[0] = 2.0;
+  for (int i = 0; i < state.lambda.size(); ++i) state.lambda[i] = std::cos(1.0 + 0.7 * i);
+  for (int i = 0; i < state.followed.size(); ++i) state.followed[i] += 1e-3 * std::sin(2.0 * i);
   return state;
+}
+
+/// The whole matrix against central differences of the right side, column by column: they differ by ten orders of
+/// magnitude (elongation, bending, abscissae).
+void expect_exact_tangent(const Model& model, double size) {
+  const State start = initial_state(model);
+  Command command = command_at(model, 0.01);
+  for (double& load : command.loads) load = 1.0;
+  const StepContext context = make_context(model, start, command, 0.01);
+  const State state = busy_state(model, size);
+  const solve::CoupledProblem problem = linearize(context, state).problem;
+  const Eigen::MatrixXd K = written_out(problem);
+  Eigen::MatrixXd D(K.rows(), K.cols());
+  for (Eigen::Index j = 0; j < K.cols(); ++j) {
+    const double e = 1e-7;
+    State plus = state, minus = state;
+    advance_reduced(context, unit(problem, j), e, plus);
+    advance_reduced(context, unit(problem, j), -e, minus);
+    D.col(j) = (right(linearize(context, minus).problem) - right(linearize(context, plus).problem)) / (2 * e);
+  }
+  EXPECT_GT(D.norm(), 1e-3);
+  for (Eigen::Index j = 0; j < K.cols(); ++j)
+    EXPECT_LT((K.col(j) - D.col(j)).norm(), 1e-6 * D.col(j).norm() + 3e-8) << "column " << j << " of " << K.cols();
 }
 
 class Tangent : public testing::TestWithParam<std::tuple<bool, double>> {};
 
-// Everything the coupled problem says about its unknowns: B is the derivative of r, -G that of c, with respect to
-// coordinates and abscissae together, at fixed multipliers.
 TEST_P(Tangent, matches_finite_differences) {
   const auto [geometric, size] = GetParam();
   Scene scene = test::cable_block();
   scene.gravity = Vec3(0, 0, -9.81);
-  scene.rods[0].second.strains = {Strain::torsion,    Strain::bending_y, Strain::bending_z,
-                                  Strain::elongation, Strain::shear_y,   Strain::shear_z};
-  if (size > 1.0) scene.rods[0].second.strains.resize(3);  // 10 1/m of curvature; elongation of that size is none
-  if (geometric) scene.rods[0].second.cable = Cable::geometric;
+  Rod& rod = scene.rods[0].second;
+  rod.strains = {Strain::torsion,    Strain::bending_y, Strain::bending_z,
+                 Strain::elongation, Strain::shear_y,   Strain::shear_z};
+  if (size > 1.0) rod.strains.resize(3);  // 10 1/m of curvature; elongation of that size is none
+  if (geometric) rod.cable = Cable::geometric;
   const Model model = build(scene, test::read_block);
-  const State start = initial_state(model);
-  const StepContext context = make_context(model, start, command_at(model, 0.01), 0.01);
-  const State state = busy_state(model, size);
-
-  const int n = model.reduced, own = model.rods[0].coordinates();
-  Eigen::VectorXd z(n);
-  z.head(own) = state.rods[0].q;
-  for (std::size_t k = 0; k < model.points.size(); ++k) {
-    if (model.points[k].unknown >= 0) z[model.points[k].unknown] = state.points[k].s;
-  }
-  const auto at = [&](const Eigen::VectorXd& y) {
-    State moved = state;
-    moved.rods[0].q = y.head(own);
-    for (std::size_t k = 0; k < model.points.size(); ++k) {
-      if (model.points[k].unknown >= 0) moved.points[k].s = y[model.points[k].unknown];
-    }
-    return linearize(context, moved).problem;
-  };
-  const solve::CoupledProblem problem = at(z);
-  const Eigen::MatrixXd dr = test::difference([&](const Eigen::VectorXd& y) { return at(y).r; }, z, 1e-7);
-  const Eigen::MatrixXd dc = test::difference([&](const Eigen::VectorXd& y) { return at(y).c; }, z, 1e-7);
-  EXPECT_GT(dr.norm(), 1e-3);
-  EXPECT_GT(dc.norm(), 1e-3);
-  // Column by column: they differ by ten orders of magnitude (elongation, bending, abscissae).
-  for (int j = 0; j < n; ++j) {
-    EXPECT_LT((problem.B.col(j) - dr.col(j)).norm(), 1e-6 * dr.col(j).norm() + 2e-8) << "r, column " << j;
-    EXPECT_LT((problem.G.col(j) + dc.col(j)).norm(), 1e-6 * dc.col(j).norm() + 2e-9) << "c, column " << j;
-  }
-  EXPECT_LT((problem.B - problem.B.transpose()).norm(), 1e-12 * problem.B.norm());
+  expect_exact_tangent(model, size);
   // The curvature of the multipliers along the curve is there, and is not nothing.
   if (!geometric && size > 1.0) {
+    const State start = initial_state(model);
+    const auto problem =
+        linearize(make_context(model, start, command_at(model, 0.01), 0.01), busy_state(model, size)).problem;
     double along = 0.0;
     for (const PointModel& point : model.points) {
       if (point.unknown >= 0) along = std::max(along, std::abs(problem.B(point.unknown, point.unknown)));
@@ -81,6 +124,98 @@ TEST_P(Tangent, matches_finite_differences) {
 INSTANTIATE_TEST_SUITE_P(Reduced, Tangent,
                          testing::Combine(testing::Bool(), testing::Values(0.0, 1e-8, 1e-5, 0.1, 10.0)));
 
+/// Two soft rods side by side, varying strains, tendons, loads of every kind, and ties of every kind.
+Scene everything(Coupling tie) {
+  Scene scene;
+  scene.time.step = 0.01;
+  scene.gravity = Vec3(0.3, 0, -9.81);
+  for (const char* name : {"a", "b"}) {
+    Rod rod;
+    const double y = name[0] == 'a' ? 0.0 : 0.05;
+    rod.path = {Vec3(0, y, 0), Vec3(0.3, y, 0.02)};
+    rod.sections = 3;
+    rod.strains = {Strain::torsion, Strain::bending_y, Strain::bending_z, Strain::elongation};
+    rod.order = {1, 2, 0, 0, 0, 0};
+    rod.section = Circle{Taper(10e-3, 6e-3)};
+    rod.material = {1e6, 0.45, 1000.0, 20.0, 1e-3};
+    rod.base = {BaseAxis::y, BaseAxis::turn_x, BaseAxis::turn_z};
+    scene.rods.emplace_back(name, rod);
+  }
+  Actuator tendon;
+  tendon.rod = "a";
+  tendon.tendon = Tendon{0.02, 0.28, Taper(8e-3, 5e-3), Taper(0.3, 4.0)};
+  tendon.drive = Table{{0.0}, {1e-3}};
+  scene.actuators.emplace_back("drawn", tendon);
+  tendon.driven = Driven::force;
+  tendon.drive = Table{{0.0}, {2.0}};
+  scene.actuators.emplace_back("pulled", tendon);
+  Load load;
+  load.rod = "b";
+  load.force = Vec3(0.1, -0.2, 0.3);
+  load.moment = Vec3(0.01, 0.02, -0.03);
+  scene.loads.emplace_back("dead", load);
+  load.follower = true;
+  load.at = 0.17;
+  scene.loads.emplace_back("follower", load);
+  load.at.reset();
+  load.from = 0.05;
+  load.to = 0.25;
+  scene.loads.emplace_back("distributed", load);
+  scene.couplings = {std::move(tie)};
+  return scene;
+}
+
+class TieTangent : public testing::TestWithParam<std::tuple<std::string, int>> {};
+
+TEST_P(TieTangent, matches_finite_differences) {
+  const auto& [holder, kind] = GetParam();
+  Tie tie;
+  tie.rod = "a";
+  tie.at = 0.21;
+  if (kind == 1) tie.along = {false, true, false};
+  if (kind == 2) tie.about = {true, true, true};
+  if (kind == 3) {
+    tie.along = {false, false, false};
+    tie.about = {false, false, true};
+  }
+  if (holder == "rod") {
+    tie.other = "b";
+    tie.other_at = 0.12;
+  }
+  Scene scene = everything(tie);
+  if (holder == "frame") {
+    Frame frame;
+    frame.pose = {Vec3(0.2, 0.4, -0.3), Vec3(0.1, 0, 0)};
+    frame.motion = FrameMotion{{0.0, 1.0}, {Vec3::Zero(), Vec3(1, 2, 3)}, {}};
+    scene.frames.emplace_back("hand", frame);
+    std::get<Tie>(scene.couplings[0]).frame = "hand";
+  }
+  for (const double size : {0.0, 1e-5, 1.0}) expect_exact_tangent(build(scene, test::read_block), size);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reduced, TieTangent,
+                         testing::Combine(testing::Values("ground", "frame", "rod"), testing::Range(0, 4)));
+
+TEST(SolidTieTangent, matches_finite_differences) {
+  for (const bool pose : {true, false}) {
+    Scene scene = test::cable_block();
+    if (pose) {
+      test::slide(scene, 0).anchor_tip = AnchorTip::pose;
+    } else {
+      Tie tie;
+      tie.rod = "cable";
+      tie.solid = scene.solids[0].first;
+      tie.at = 0.03;
+      tie.along = {true, false, true};
+      tie.about = {false, true, false};
+      scene.couplings.emplace_back(tie);
+    }
+    const Model model = build(scene, test::read_block);
+    ASSERT_FALSE(model.ties.empty());
+    for (const double size : {0.0, 1.0}) expect_exact_tangent(model, size);
+  }
+}
+
 TEST(Build, an_anchor_is_kept_where_nothing_else_could_be) {
   // In a clamped region, on a rod that can only stretch: no row across it says anything, the anchor's row along it
   // does.
@@ -88,20 +223,20 @@ TEST(Build, an_anchor_is_kept_where_nothing_else_could_be) {
   scene.solids[0].second.fixed[0].upper = Vec3(61 * test::mm, 11 * test::mm, 4 * test::mm);
   scene.rods[0].second.path = {Vec3(0, 5 * test::mm, 3 * test::mm), Vec3(60 * test::mm, 5 * test::mm, 3 * test::mm)};
   scene.rods[0].second.strains = {Strain::elongation};
-  scene.couplings[0].points = std::vector<double>{60 * test::mm};
+  test::slide(scene, 0).points = std::vector<double>{60 * test::mm};
   scene.solids[0].second.fixed[0].upper.z() = 6 * test::mm;
   const Model model = build(scene, test::read_block);
   EXPECT_EQ(model.couplings[0].kept, 1);
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
-  const double EA = model.rods[0].rod.stiffness[0][3];
+  const double EA = rod::stiffness_at(model.rods[0].rod.profile, 0.0)(3, 3);
   EXPECT_NEAR(trace.states.back().actuators[0], EA * 2e-3 / 60e-3, 1e-6 * EA);
 }
 
 TEST(Build, a_second_coupling_does_not_repeat_the_rows_of_the_first) {
   Scene scene = test::cable_block();
   scene.couplings.push_back(scene.couplings[0]);
-  scene.couplings[1].anchor_tip = AnchorTip::none;
+  test::slide(scene, 1).anchor_tip = AnchorTip::none;
   const Model model = build(scene, test::read_block);
   EXPECT_EQ(model.couplings[0].kept, 5);
   EXPECT_EQ(model.couplings[1].kept, 0);

@@ -25,12 +25,9 @@ double kinetic_energy(const Model& model, const State& state) {
 double elastic_energy(const Model& model, const State& state) {
   const rod::Rod& rod = model.rods[0].rod;
   double energy = 0.0;
-  for (int i = 0; i < rod.sections(); ++i) {
-    for (int c = 0; c < rod.strains(); ++c) {
-      const int j = rod.first_coordinate(i) + c;
-      const double e = state.rods[0].q[j] - rod.rest[j - rod.base_coordinates()];
-      energy += 0.5 * rod.section_length(i) * rod.stiffness[i][rod.basis[c]] * e * e;
-    }
+  for (int i = 0; i < rod.count(); ++i) {
+    const Eigen::VectorXd q = rod.of_section(state.rods[0].q, i);
+    energy += 0.5 * q.dot(rod.sections[i].stiffness * q);
   }
   return energy;
 }
@@ -118,7 +115,7 @@ TEST(LoneRod, motor_force_accelerates_the_rods_mass) {
 }
 
 TEST(LoneRod, free_vibration_is_the_backward_euler_recurrence_of_mass_and_stiffness) {
-  // One small step from a bent start against (M / h^2 + K) dq = -K (q - rest), M = sum m J^T J at the start.
+  // One small step from a bent start against (M / h^2 + K) dq = -K q, M = sum m J^T J at the start.
   Scene scene = test::lone_rod(1000.0, 3);
   const Model model = build(scene, test::read_block);
   State state = initial_state(model);
@@ -135,10 +132,10 @@ TEST(LoneRod, free_vibration_is_the_backward_euler_recurrence_of_mass_and_stiffn
     const Eigen::MatrixXd J = rod::position_jacobian(shape, rod.masses[i].s, rod.masses[i].offset);
     A += rod.masses[i].mass / (h * h) * J.transpose() * J;
   }
-  for (int j = 0; j < n; ++j) {
-    const double k = rod.section_length(j / 3) * rod.stiffness[j / 3][rod.basis[j % 3]];
-    A(j, j) += k;
-    right[j] = -k * (state.rods[0].q[j] - rod.rest[j]);
+  for (int i = 0; i < rod.count(); ++i) {
+    const int at = rod.first[i], m = rod.first[i + 1] - at;
+    A.block(at, at, m, m) += rod.sections[i].stiffness;
+    right.segment(at, m) = -(rod.sections[i].stiffness * state.rods[0].q.segment(at, m));
   }
   const Eigen::VectorXd dq = A.ldlt().solve(right);
   Workspace workspace = make_workspace(model);

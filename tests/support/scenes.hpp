@@ -25,6 +25,9 @@ inline void tie_and_pull(Scene& scene, const std::string& solid, int points, dou
   scene.actuators.emplace_back("pull", actuator);
 }
 
+/// The slide that stands at this place among the couplings.
+inline Slide& slide(Scene& scene, std::size_t number) { return std::get<Slide>(scene.couplings[number]); }
+
 /// The comparison scene: the public finger mesh turned about y, a straight massless cable of 81 mm along +x from the
 /// origin in 8 sections tied at 9 points, no gravity, pulled at `rate`. `rigid` moves everything through poses.
 inline Scene comparison_finger(const std::filesystem::path& mesh, double pull, double rate = 0.01,
@@ -55,7 +58,7 @@ inline Scene comparison_finger(const std::filesystem::path& mesh, double pull, d
   cable.path = {Vec3::Zero(), Vec3(81 * mm, 0, 0)};
   cable.pose = rigid;
   cable.sections = 8;
-  cable.section.radius = 0.5 * mm;
+  cable.section = Circle{0.5 * mm};
   cable.material = {5e9, 0.45, 0.0};
   scene.rods.emplace_back("cable", cable);
   tie_and_pull(scene, "finger", 9, pull, rate);
@@ -110,7 +113,7 @@ inline Scene cable_block(double pull = 2 * mm, double rate = 0.02) {
   Rod cable;
   cable.path = {Vec3(0, 5 * mm, 8 * mm), Vec3(60 * mm, 5 * mm, 8 * mm)};
   cable.sections = 6;
-  cable.section.radius = 0.3 * mm;
+  cable.section = Circle{0.3 * mm};
   cable.material = {2e9, 0.4, 1100.0};
   scene.rods.emplace_back("cable", cable);
   tie_and_pull(scene, "block", 6, pull, rate);
@@ -132,7 +135,7 @@ inline Scene lone_rod(double density = 1000.0, int sections = 10) {
   Rod rod;
   rod.path = {Vec3::Zero(), Vec3(0.5, 0, 0)};
   rod.sections = sections;
-  rod.section.radius = 5 * mm;
+  rod.section = Circle{5 * mm};
   rod.material = {10e6, 0.45, density};
   scene.rods.emplace_back("rod", rod);
   Output tip;

@@ -7,6 +7,16 @@
 namespace sinew::constraint {
 
 double project(const rod::Configuration& shape, double s, const Vec3& P) {
+  const double length = shape.rod->length();
+  const auto beyond_tip = [&] {  // the rod goes on straight
+    const rod::CurvePoint tip = rod::curve_point(shape, length);
+    return length + (P - tip.position).dot(tip.derivative) / tip.derivative.squaredNorm();
+  };
+  if (s > length) {
+    const double ahead = beyond_tip();
+    if (ahead >= length) return ahead;
+    s = length;
+  }
   for (int iteration = 0; iteration < 50; ++iteration) {
     const rod::CurvePoint point = rod::curve_point(shape, s);
     const Vec3 gap = P - point.position;
@@ -14,10 +24,11 @@ double project(const rod::Configuration& shape, double s, const Vec3& P) {
     const double speed2 = point.derivative.squaredNorm();
     // Newton's curvature |gamma_s|^2 - gap . gamma_ss, kept away from zero near a centre of curvature.
     const double curvature = std::max(speed2 - gap.dot(point.second), 0.5 * speed2);
-    const double reach = 0.5 * shape.rod->section_length(point.section);
+    const double reach = 0.5 * shape.rod->sections[point.section].length();
     const double ds = std::clamp(slope / curvature, -reach, reach);
-    s += ds;
-    if (std::abs(ds) <= 1e-15 * shape.rod->length()) break;
+    if (s == length && ds > 0.0) return beyond_tip();
+    s = std::min(s + ds, length);
+    if (std::abs(ds) <= 1e-15 * length) break;
   }
   return s;
 }

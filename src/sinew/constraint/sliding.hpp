@@ -14,7 +14,7 @@ using Vec3 = Eigen::Vector3d;
 
 /// The abscissa of the point of the curve nearest to P on the branch that `s` is on: from s, Newton steps on
 /// (P - gamma) . gamma_s = 0, each held within half a section's length, so it never jumps to another branch. The result
-/// may lie beyond the ends, where the first and last section are continued.
+/// may lie beyond the ends: the first section is continued, beyond the tip the rod goes on straight.
 double project(const rod::Configuration& shape, double s, const Vec3& P);
 
 /// delta = N^T (P - gamma(s)) [m] and its derivatives at the projected abscissa; N spans the normal plane of the curve

@@ -47,8 +47,8 @@ std::string show(const Node& node, std::size_t longest = 60);
 std::string show(const std::string& text, std::size_t longest = 60);
 
 /// Applies "solids.finger.material.young=500 kPa": the value is YAML and replaces what stands there; a missing key is
-/// added at the end. Below `solids`, `rods`, `frames`, `actuators` and `outputs` only objects that exist can be
-/// changed. Throws InputError with "--set" as the file.
+/// added at the end. Below `frames`, `solids`, `rods`, `actuators`, `loads` and `outputs` only objects that
+/// exist can be changed. Throws InputError with "--set" as the file.
 void set_value(Node& root, const std::string& assignment);
 
 }  // namespace sinew::io

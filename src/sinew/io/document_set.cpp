@@ -12,7 +12,7 @@ namespace sinew::io {
 namespace {
 
 /// Maps from a name the user chose: a new name here would only be a misspelled one.
-constexpr std::array<std::string_view, 5> named = {"frames", "solids", "rods", "actuators", "outputs"};
+constexpr std::array<std::string_view, 6> named = {"frames", "solids", "rods", "actuators", "loads", "outputs"};
 
 [[noreturn]] void refuse(const std::string& path, const std::string& rule, const std::string& remedy) {
   throw InputError({.file = "--set", .line = 0, .path = path, .value = {}, .rule = rule, .remedy = remedy});

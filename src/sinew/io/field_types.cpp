@@ -1,9 +1,8 @@
-// The leaves: numbers, words, text; and the rules between keys.
+// The leaves: numbers, words, text, names of other objects.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -14,33 +13,17 @@
 namespace sinew::io {
 namespace {
 
-constexpr std::array<Dimension, 11> dimensions = {Dimension::number,       Dimension::length,   Dimension::mass,
-                                                  Dimension::time,         Dimension::angle,    Dimension::force,
-                                                  Dimension::torque,       Dimension::pressure, Dimension::density,
-                                                  Dimension::acceleration, Dimension::rate};
-
-/// "length", the name of its definition.
+/// "length" or "line_density", the name of its definition.
 std::string word_for(Dimension dimension) {
   const std::string_view full = name(dimension);
-  return std::string(full.substr(full.find(' ') + 1));
+  std::string word(full.substr(full.find(' ') + 1));
+  std::replace(word.begin(), word.end(), ' ', '_');
+  return word;
 }
 
 std::string with_unit(double value, Dimension dimension) {
   const std::string_view unit = value == 0.0 && dimension == Dimension::number ? "" : si_unit(dimension);
   return unit.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
-}
-
-bool says(const At& map, const std::string& key, const std::string& word) {
-  return map.has(key) && map.child(key).is(Node::Kind::scalar) && map.child(key).node().text == word;
-}
-
-const Key& find(const std::vector<Key>& keys, const std::string& name) {
-  return *std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
-}
-
-/// Schema of an object in which `key` is given and says `word`.
-Json says_schema(const std::string& key, const std::string& word) {
-  return {{"properties", {{key, {{"const", word}}}}}, {"required", Json::array({key})}};
 }
 
 }  // namespace
@@ -76,7 +59,7 @@ Type<double> quantity(Dimension dimension, Range range) {
 
 Json quantity_definitions() {
   Json json = Json::object();
-  for (const Dimension dimension : dimensions) {
+  for (const Dimension dimension : all_dimensions) {
     const auto accepted = units(dimension);
     json[word_for(dimension)] = {
         {"description", accepted.empty() ? std::string("a plain number")
@@ -120,6 +103,33 @@ Type<std::string> text() {
   return {read, [] { return Json{{"type", "string"}, {"minLength", 1}}; }};
 }
 
+Type<bool> boolean() {
+  const auto read = [](const At& at) {
+    const bool yes = at.node().text == "true";
+    if (!at.is(Node::Kind::scalar) || (!yes && at.node().text != "false")) at.refuse("must be true or false");
+    return yes;
+  };
+  return {read, [] { return Json{{"type", "boolean"}}; }, [](const bool& value) { return Json(value); }};
+}
+
+Type<std::string> name_of(std::string what) {
+  const Type<std::string> any = text();
+  const auto read = [=](const At& at) {
+    std::string name = any.read(at);
+    const std::vector<std::string> known = at.names_in(what + "s");
+    if (std::find(known.begin(), known.end(), name) != known.end()) return name;
+    constexpr std::size_t shown = 12;
+    const std::vector<std::string> first(known.begin(), known.begin() + std::min(known.size(), shown));
+    const std::string near = nearest(name, known);
+    at.refuse(fmt::format("is not a {} of this scene", what),
+              (near.empty() ? "" : fmt::format("did you mean `{}`? ", near)) +
+                  (known.empty() ? fmt::format("the scene has no {}s; describe it under `{}s:`", what, what)
+                                 : fmt::format("the {}s are {}{}", what, fmt::join(first, ", "),
+                                               known.size() > shown ? ", ..." : "")));
+  };
+  return {read, any.schema};
+}
+
 Type<int> word(std::vector<std::string> words) {
   const auto read = [=](const At& at) {
     const auto found = std::find(words.begin(), words.end(), at.node().text);
@@ -135,54 +145,32 @@ Type<int> word(std::vector<std::string> words) {
           [=](const int& value) { return Json(words[static_cast<std::size_t>(value)]); }};
 }
 
-Rule exactly_one(std::vector<std::string> keys) {
-  Json schema;
-  for (const std::string& key : keys) schema["oneOf"].push_back({{"required", Json::array({key})}});
-  const auto check = [=](const At& at, const std::vector<Key>& all) {
-    std::vector<std::string> given;
-    std::copy_if(keys.begin(), keys.end(), std::back_inserter(given), [&](const std::string& k) { return at.has(k); });
-    const std::string choice = fmt::format("{}", fmt::join(keys, ", "));
-    if (given.empty())
-      at.refuse_key(keys[0], fmt::format("is missing: exactly one of {} is needed", choice),
-                    "add one: " + help(find(all, keys[0])));
-    if (given.size() > 1) {
-      at.refuse_key(given[1],
-                    fmt::format("cannot be given together with {}: exactly one of {} is needed", given[0], choice),
-                    fmt::format("remove one of {}", fmt::join(given, " and ")));
-    }
+Type<std::vector<int>> distinct_words(std::string what, std::vector<std::string> words, Count count) {
+  const Type<int> one = word(std::move(words));
+  const Type<std::vector<int>> several =
+      list<int>(std::move(what), one, count, [](const std::vector<int>& values, const At& at) {
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          if (std::count(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values[i]) > 0) {
+            at.item(i).refuse("is listed twice", "keep one of them");
+          }
+        }
+      });
+  const auto read = [=](const At& at) {
+    std::vector<int> values = several.read(at);
+    std::sort(values.begin(), values.end());
+    return values;
   };
-  return {check, schema};
-}
-
-Rule needs(std::string key, std::string other) {
-  const auto check = [=](const At& at, const std::vector<Key>&) {
-    if (at.has(key) && !at.has(other)) {
-      at.refuse_key(key, fmt::format("is given without `{}`", other),
-                    fmt::format("add `{}`, or remove `{}`", other, key));
-    }
+  const auto schema = [=] {
+    Json json = several.schema();
+    json["uniqueItems"] = true;
+    return json;
   };
-  return {check, {{"dependentRequired", {{key, Json::array({other})}}}}};
-}
-
-Rule only_with(std::string key, std::string other, std::string word) {
-  const auto check = [=](const At& at, const std::vector<Key>&) {
-    if (at.has(key) && at.has(other) && !says(at, other, word)) {
-      at.child(other).refuse(fmt::format("must be {} for {}", word, key),
-                             fmt::format("write `{}: {}`, or leave it out", other, word));
-    }
+  const auto show = [=](const std::vector<int>& values) {
+    Json json = Json::array();
+    for (const int value : values) json.push_back(one.show(value));
+    return json;
   };
-  return {check, {{"dependentSchemas", {{key, {{"properties", {{other, {{"const", word}}}}}}}}}}};
-}
-
-Rule wanted_unless(std::string key, std::string word, std::vector<std::string> wanted) {
-  const auto check = [=](const At& at, const std::vector<Key>& all) {
-    if (says(at, key, word)) return;
-    for (const std::string& one : wanted) {
-      if (!at.has(one))
-        at.refuse_key(one, "is missing", fmt::format("add it, or write `{}: {}`: {}", key, word, help(find(all, one))));
-    }
-  };
-  return {check, {{"if", says_schema(key, word)}, {"else", {{"required", wanted}}}}};
+  return {read, schema, show};
 }
 
 }  // namespace sinew::io

@@ -23,7 +23,8 @@ const Entry* find(const Node& map, const std::string& key) {
   return found == map.entries.end() ? nullptr : &*found;
 }
 
-/// The value of a key as JSON, for the examples in a schema: numbers stay numbers, other scalars become strings.
+/// The value of a key as JSON, for the examples in a schema: numbers and booleans stay what they are, other scalars
+/// become strings.
 Json to_json(const Node& node) {
   if (node.kind == Node::Kind::map) {
     Json json = Json::object();
@@ -35,6 +36,7 @@ Json to_json(const Node& node) {
     for (const Node& item : node.items) json.push_back(to_json(item));
     return json;
   }
+  if (node.text == "true" || node.text == "false") return node.text == "true";
   long whole = 0;
   const char* end = node.text.data() + node.text.size();
   if (std::from_chars(node.text.data(), end, whole).ptr == end) return whole;
@@ -63,7 +65,6 @@ At At::entry(std::size_t index) const {
   at.node_ = &found.value;
   at.line_ = line_of(found);
   at.path_ += (path_.empty() ? "" : ".") + printable(found.key);
-  at.key_ = nullptr;
   return at;
 }
 
@@ -79,6 +80,19 @@ At At::child(const Key& key) const {
   At at = child(key.name);
   at.key_ = std::make_shared<const Key>(key);
   return at;
+}
+
+bool At::says(const std::string& key, const std::string& word) const {
+  const Entry* found = find(*node_, key);
+  return found != nullptr && found->value.kind == Node::Kind::scalar && found->value.text == word;
+}
+
+std::vector<std::string> At::names_in(const std::string& group) const {
+  std::vector<std::string> names;
+  if (const Entry* found = find(*root_, group); found != nullptr) {
+    for (const Entry& entry : found->value.entries) names.push_back(entry.key);
+  }
+  return names;
 }
 
 void At::refuse(std::string rule, std::string remedy) const {
@@ -133,7 +147,9 @@ Json object_schema(const std::vector<Key>& keys, const std::vector<Json>& values
     json["properties"][keys[i].name] = value;
     if (keys[i].need == Need::required) json["required"].push_back(keys[i].name);
   }
-  for (const Rule& rule : rules) json["allOf"].push_back(rule.schema);
+  for (const Rule& rule : rules) {
+    if (!rule.schema.is_null()) json["allOf"].push_back(rule.schema);
+  }
   return json;
 }
 

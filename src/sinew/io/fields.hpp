@@ -1,7 +1,8 @@
 // One declaration for each key of a file: from it come both the reader, with its messages, and the JSON Schema.
 //
 // `Type<V>` reads a V from the tree and describes its JSON; `Field<T>` ties a key to a place in the struct T;
-// `Object<T>` is the list of its fields plus rules between them. scene_fields.cpp is written in these words.
+// `Object<T>` is the list of its fields plus rules between them; `one_of_kinds` a map whose one key says what it is;
+// `name_of` the name of another object of the file. The scene_*.cpp are written in these words.
 #pragma once
 
 #include <functional>
@@ -37,17 +38,21 @@ std::string help(const Key& key);
 /// A value in the document, with the way to it; whoever finds a fault in it refuses it here.
 class At {
  public:
-  At(const Node& node, std::string file) : node_(&node), file_(std::move(file)), line_(node.line) {}
+  At(const Node& root, std::string file) : root_(&root), node_(&root), file_(std::move(file)), line_(root.line) {}
 
   const Node& node() const { return *node_; }
   const std::string& path() const { return path_; }
   bool is(Node::Kind kind) const { return node_->kind == kind; }
 
-  At item(std::size_t index) const;        ///< of a list
-  bool has(const std::string& key) const;  ///< of a map
-  At child(const std::string& key) const;  ///< of a map that has it
-  At entry(std::size_t index) const;       ///< of a map
-  At child(const Key& key) const;          ///< and remembers its doc and example for messages
+  At item(std::size_t index) const;                                  ///< of a list
+  bool has(const std::string& key) const;                            ///< of a map
+  At child(const std::string& key) const;                            ///< of a map that has it
+  At entry(std::size_t index) const;                                 ///< of a map
+  At child(const Key& key) const;                                    ///< and remembers its doc and example for messages
+  bool says(const std::string& key, const std::string& word) const;  ///< of a map: whether it has `key: word`
+
+  /// The keys of the map that the document has under `group`; none if there is no such map.
+  std::vector<std::string> names_in(const std::string& group) const;
 
   /// Throws InputError; without a remedy, the doc and example of the key are one.
   [[noreturn]] void refuse(std::string rule, std::string remedy = "") const;
@@ -55,6 +60,7 @@ class At {
   [[noreturn]] void refuse_key(const std::string& key, std::string rule, std::string remedy = "") const;
 
  private:
+  const Node* root_;
   const Node* node_;
   std::string file_;
   std::string path_;
@@ -95,21 +101,27 @@ Field<T> field(Key key, Access access, Type<V> type) {
 /// A condition between the keys of one object, for the reader and for the schema.
 struct Rule {
   std::function<void(const At&, const std::vector<Key>&)> check;
-  Json schema;
+  Json schema = nullptr;  ///< null: what the schema cannot say
 };
 
 Rule exactly_one(std::vector<std::string> keys);
+Rule at_least_one(std::vector<std::string> keys);
+Rule at_most_one(std::vector<std::string> keys);
+/// `key` may not be given together with any of `others`.
+Rule excludes(std::string key, std::vector<std::string> others);
 /// `key` may only be given together with `other`.
 Rule needs(std::string key, std::string other);
 /// If `key` is given, `other` is absent or says `word`.
 Rule only_with(std::string key, std::string other, std::string word);
-/// `wanted` must be given unless `key` says `word`.
+/// One of `wanted` must be given unless `key` says `word`.
 Rule wanted_unless(std::string key, std::string word, std::vector<std::string> wanted);
+/// Schema of an object in which `key` is given and says `word`.
+Json says_schema(const std::string& key, const std::string& word);
 
 template <class T>
 struct Object {
-  std::string what;  ///< "a solid", for messages
-  std::vector<Field<T>> fields;
+  std::string what;              ///< "a solid", for messages
+  std::vector<Field<T>> fields;  ///< stored in this order, so that one may be read by what those before it say
   std::vector<Rule> rules = {};
   std::function<void(const T&, const At&)> check = nullptr;  ///< on the finished object
 };
@@ -135,6 +147,43 @@ Type<T> map(Object<T> object) {
     std::vector<Json> values;
     for (const Field<T>& f : object.fields) values.push_back(f.schema());
     return object_schema(keys, values, object.rules);
+  };
+  return {read, schema};
+}
+
+/// One of the things that a V may be. Its key names it.
+template <class V>
+struct Kind {
+  Key key;
+  std::function<V(const At&)> read;
+  std::function<Json()> schema;
+};
+
+template <class V, class K>
+Kind<V> kind(std::string name, std::string doc, std::string example, Type<K> type) {
+  return {{std::move(name), Need::optional, std::move(doc), std::move(example)}, type.read, type.schema};
+}
+
+/// A map with exactly one key, the kind, as in `{slide: {...}}`.
+template <class V>
+Type<V> one_of_kinds(std::string what, std::vector<Kind<V>> kinds) {
+  std::vector<Key> keys;
+  std::vector<std::string> names;
+  for (const Kind<V>& one : kinds) {
+    keys.push_back(one.key);
+    names.push_back(one.key.name);
+  }
+  const std::vector<Rule> rules = {exactly_one(names)};
+  const auto read = [=](const At& at) {
+    check_keys(at, what, keys, rules);
+    std::size_t given = 0;
+    while (!at.has(names[given])) ++given;
+    return kinds[given].read(at.child(keys[given]));
+  };
+  const auto schema = [=] {
+    std::vector<Json> values;
+    for (const Kind<V>& one : kinds) values.push_back(one.schema());
+    return object_schema(keys, values, rules);
   };
   return {read, schema};
 }
@@ -193,6 +242,10 @@ struct Range {
 Type<double> quantity(Dimension dimension, Range range = {});
 Type<int> whole_number(int lower, int upper);
 Type<std::string> text();
+Type<bool> boolean();
+
+/// The name of an object that the file describes: of a "rod", listed under `rods`.
+Type<std::string> name_of(std::string what);
 
 /// One of a few words. Their order is that of the enumeration.
 Type<int> word(std::vector<std::string> words);
@@ -201,6 +254,24 @@ Type<E> word_of(std::vector<std::string> words) {
   const Type<int> type = word(std::move(words));
   return {[=](const At& at) { return static_cast<E>(type.read(at)); }, type.schema,
           [=](const E& value) { return type.show(static_cast<int>(value)); }};
+}
+
+/// A list of such words, each at most once; sorted by their order.
+Type<std::vector<int>> distinct_words(std::string what, std::vector<std::string> words, Count count);
+template <class E>
+Type<std::vector<E>> distinct(std::string what, std::vector<std::string> words, Count count) {
+  const Type<std::vector<int>> type = distinct_words(std::move(what), std::move(words), count);
+  const auto read = [=](const At& at) {
+    std::vector<E> values;
+    for (const int value : type.read(at)) values.push_back(static_cast<E>(value));
+    return values;
+  };
+  const auto show = [=](const std::vector<E>& values) {
+    std::vector<int> numbers;
+    for (const E value : values) numbers.push_back(static_cast<int>(value));
+    return type.show(numbers);
+  };
+  return {read, type.schema, show};
 }
 
 /// Definitions that the schema of a quantity refers to.

@@ -189,8 +189,10 @@ std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end) {
   }
   for (const Snapshot* snapshot : {&rest, &end}) {
     for (const RodSnapshot& rod : snapshot->rods) {
-      const double radius = std::isfinite(rod.radius) && rod.radius > 0.0 && rod.radius < 1e30 ? rod.radius : 0.0;
-      for (Eigen::Index i = 0; i < rod.points.cols(); ++i) sights.push_back({rod.points.col(i), radius});
+      for (Eigen::Index i = 0; i < rod.points.cols(); ++i) {
+        const double radius = i < rod.radius.size() ? rod.radius(i) : 0.0;
+        sights.push_back({rod.points.col(i), radius > 0.0 && radius < 1e30 ? radius : 0.0});
+      }
     }
     for (const auto* marks : {&snapshot->outputs, &snapshot->sliding_points})
       for (const MarkSnapshot& mark : *marks) sights.push_back({mark.position, 0.0});

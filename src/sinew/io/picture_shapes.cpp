@@ -106,18 +106,18 @@ double edge_strength(const std::vector<SolidSnapshot>& solids, const PictureView
 
 void add_tube(Raster& raster, const RodSnapshot& rod, const Eigen::VectorXd& values, const Scale& scale,
               const PictureView& view) {
-  std::vector<Vec3> path;  // in view axes [px], y down
-  std::vector<double> value;
+  std::vector<Vec3> path;             // in view axes [px], y down
+  std::vector<double> value, radius;  // [px]
   for (Eigen::Index i = 0; i < rod.points.cols(); ++i) {
     if (!drawable(rod.points.col(i))) continue;
     const Vec3 place = view.project(rod.points.col(i));
     if (!path.empty() && (place - path.back()).norm() < 1e-3) continue;
     path.push_back(place);
     value.push_back(i < values.size() ? scale.of(values(i)) : NAN);
+    const double own = i < rod.radius.size() ? rod.radius(i) * view.scale : 0.0;
+    radius.push_back(own > kThinnestRod ? own : kThinnestRod);  // (also of NaN)
   }
   if (path.size() < 2) return;
-  const double radius =
-      rod.radius * view.scale > kThinnestRod ? rod.radius * view.scale : kThinnestRod;  // (also of NaN)
   Vec3 across = Vec3::Zero();
   std::array<Corner, kSides> last{};
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -131,7 +131,7 @@ void add_tube(Raster& raster, const RodSnapshot& rod, const Eigen::VectorXd& val
     for (int k = 0; k < kSides; ++k) {
       const double angle = 2 * std::numbers::pi * k / kSides;
       const Vec3 normal = std::cos(angle) * across + std::sin(angle) * other;
-      ring[k] = {path[i] + radius * normal, value[i], 0.72 + 0.4 * std::max(0.0, normal.z())};
+      ring[k] = {path[i] + radius[i] * normal, value[i], 0.72 + 0.4 * std::max(0.0, normal.z())};
     }
     const bool end = i == 0 || i + 1 == path.size();
     for (int k = 0; k < kSides; ++k) {

@@ -9,7 +9,4 @@ namespace sinew::io {
 /// Every key of a scene file, what it means and where it goes.
 const Type<Scene>& scene_type();
 
-/// Names that are used must exist and must not clash. Throws InputError.
-void check_names(const Scene& scene, const At& root);
-
 }  // namespace sinew::io

@@ -53,8 +53,6 @@ int line_of(const SceneFile& file, const std::string& field_path) {
 std::string scene_schema() {
   Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Sinew scene"}};
   schema.update(scene_type().schema());
-  schema["anyOf"] =
-      Json::array({Json{{"required", Json::array({"solids"})}}, Json{{"required", Json::array({"rods"})}}});
   schema["$defs"] = quantity_definitions();
   return schema.dump(2) + "\n";
 }

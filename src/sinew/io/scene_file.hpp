@@ -1,4 +1,4 @@
-// Reads scene files (YAML). The keys stand in scene_fields.cpp.
+// Reads scene files (YAML). The keys stand in scene_fields.cpp and scene_objects.hpp.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Values that several objects of a scene file share: vectors, regions, tables over time.
+// Values that several objects of a scene file share: vectors, poses, tapers, lists of lengths, drives over time.
 #pragma once
 
 #include "sinew/io/fields.hpp"
@@ -10,18 +10,23 @@ inline Range above(double lower) { return {.lower = lower, .above = true}; }
 inline Range at_least(double lower) { return {.lower = lower}; }
 
 Type<Vec3> vec3(Dimension dimension);
-Type<Vec3> direction();  ///< any vector but zero
+Type<Vec3> direction();                       ///< any vector but zero
+Type<std::vector<Vec3>> points(Count count);  ///< [m], no two neighbours the same
 Type<In> in();
 Type<Pose> pose();
-Type<std::vector<double>> times();
-Type<FrameMotion> frame_motion();
-Type<std::vector<Box>> regions();
-Type<std::filesystem::path> file_name();
-Type<std::vector<Vec3>> path();
-Type<std::vector<Strain>> strains();
+Type<std::vector<double>> times();               ///< ascending
+Type<std::vector<double>> lengths(Count count);  ///< ascending, not negative
 Type<Drive> drive(Dimension dimension);
+
+/// One value, or a pair of values for the two ends.
+Type<Taper> taper(Dimension dimension, Range range);
 
 /// A count up to 10000, or a list of ascending lengths.
 Type<std::variant<int, std::vector<double>>> count_or_lengths(int least, bool from_zero);
+
+/// Of a list `at` of so many entries: one for each of so many `times`.
+void check_one_per_time(std::size_t size, std::size_t times, const At& at);
+/// Of an object `at` that has a key `to`: it must be beyond `from`.
+void check_from_to(double from, double to, const At& at);
 
 }  // namespace sinew::io

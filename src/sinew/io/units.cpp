@@ -58,6 +58,17 @@ constexpr std::array all_units = std::to_array<Unit>({
     {"mm/s^2", acceleration, 1.0, 1e3},
     {"m/s^2", acceleration},
     {"1/s", rate},
+    {"1/m", curvature},
+    {"1/cm", curvature, 1e2},
+    {"1/mm", curvature, 1e3},
+    {"mPa s", viscosity, 1.0, 1e3},
+    {"Pa s", viscosity},
+    {"kPa s", viscosity, 1e3},
+    {"g/m", line_density, 1.0, 1e3},
+    {"kg/m", line_density},
+    {"mN/m", line_load, 1.0, 1e3},
+    {"N/m", line_load},
+    {"kN/m", line_load, 1e3},
 });
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
@@ -135,6 +146,14 @@ std::string_view name(Dimension dimension) {
       return "an acceleration";
     case rate:
       return "a rate";
+    case curvature:
+      return "a curvature";
+    case viscosity:
+      return "a viscosity";
+    case line_density:
+      return "a line density";
+    case line_load:
+      return "a line load";
   }
   return "";
 }
@@ -163,6 +182,14 @@ std::string_view si_unit(Dimension dimension) {
       return "m/s^2";
     case rate:
       return "1/s";
+    case curvature:
+      return "1/m";
+    case viscosity:
+      return "Pa s";
+    case line_density:
+      return "kg/m";
+    case line_load:
+      return "N/m";
   }
   return "";
 }

@@ -1,6 +1,7 @@
 // Numbers as people write them: bare (SI) or with a unit, "12 mm", "250 kPa", "9.81 m/s^2".
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,7 +9,28 @@
 namespace sinew::io {
 
 /// What a number measures, and so which units it may carry.
-enum class Dimension { number, length, mass, time, angle, force, torque, pressure, density, acceleration, rate };
+enum class Dimension {
+  number,
+  length,
+  mass,
+  time,
+  angle,
+  force,
+  torque,
+  pressure,
+  density,
+  acceleration,
+  rate,
+  curvature,
+  viscosity,
+  line_density,
+  line_load
+};
+
+inline constexpr std::array all_dimensions = {
+    Dimension::number, Dimension::length,    Dimension::mass,      Dimension::time,         Dimension::angle,
+    Dimension::force,  Dimension::torque,    Dimension::pressure,  Dimension::density,      Dimension::acceleration,
+    Dimension::rate,   Dimension::curvature, Dimension::viscosity, Dimension::line_density, Dimension::line_load};
 
 /// "a length"
 std::string_view name(Dimension dimension);

@@ -14,9 +14,6 @@
 namespace sinew::io {
 namespace {
 
-constexpr const char* kStrains[] = {"torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"};
-constexpr const char* kStresses[] = {"torsion_moment", "bending_moment_y", "bending_moment_z",
-                                     "axial_force",    "shear_force_y",    "shear_force_z"};
 constexpr int kTetrahedron = 10, kPolyline = 4;  // cell types of VTK
 constexpr const char* kByteOrder = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 constexpr const char* kCollectionEnd = "  </Collection>\n</VTKFile>\n";
@@ -62,7 +59,7 @@ std::string array(const char* type, const std::string& attributes, const Value* 
   return fmt::format("<DataArray type=\"{}\" {} format=\"binary\">{}</DataArray>\n", type, attributes, base64(raw));
 }
 
-std::string doubles(const char* name, const Eigen::MatrixXd& values) {  // one column a point
+std::string doubles(const std::string& name, const Eigen::MatrixXd& values) {  // one column a point
   return array("Float64", fmt::format("Name=\"{}\" NumberOfComponents=\"{}\"", name, values.rows()), values.data(),
                static_cast<std::size_t>(values.size()));
 }
@@ -119,14 +116,13 @@ std::string vtu_text(const RodSnapshot& rod, double time) {
   if (samples > 0) ends.push_back(samples);
 
   std::string data;
-  const auto add = [&](const char* name, const Eigen::MatrixXd& values) {
+  const auto add = [&](const std::string& name, const Eigen::MatrixXd& values) {
     if (values.cols() == samples) data += doubles(name, values);
   };
   add("abscissa", rod.abscissa.transpose());
-  add("radius", Eigen::RowVectorXd::Constant(samples, rod.radius));
+  add("radius", rod.radius.transpose());
   add("tangent", rod.tangents);
-  for (int i = 0; i < 6; ++i) add(kStrains[i], rod.strains.row(i));
-  for (int i = 0; i < 6; ++i) add(kStresses[i], rod.stresses.row(i));
+  for (const PointField& field : rod.fields) add(field.name, field.values);
   add("von_mises", rod.von_mises.transpose());
   return grid(time, rod.points, ends.size(), cells(connectivity, ends, kPolyline), data, "");
 }

@@ -2,61 +2,97 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sinew/lie/rotation.hpp"
+#include "sinew/linalg/chain.hpp"
 #include "sinew/rod/rod.hpp"
 
 namespace sinew::rod {
 
-/// A rod in space: frames at the section ends and what each section's formulas need. Everything below reads it.
-struct Configuration {
-  const Rod* rod = nullptr;
-  std::vector<Mat3> R;  ///< N + 1 frames at the section ends
-  std::vector<Vec3> p;  ///< N + 1 positions [m]
-  std::vector<Vec3> k;  ///< N curvature vectors (torsion, bending_y, bending_z) [1/m]
-  std::vector<Vec3> u;  ///< N tangents in the section's frame: (1 + elongation, shear_y, shear_z)
-  /// 3 x n each: turning q_j by dq_j turns and moves everything beyond by the twist (omega, v) dq_j, v taken at
-  /// `origin`.
-  Eigen::Matrix3Xd omega, v;
-  Vec3 origin = Vec3::Zero();  ///< the base's placement; keeps lever arms short wherever the scene stands
+using linalg::Matrix6X;
+/// Twists of the coordinates of one section: 6 x m.
+using SectionTwists = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 * (kHighestDegree + 1)>;
+
+/// One exponential: the frame (R, p) times exp(phi, rho).
+struct Piece {
+  Piece(const Mat3& frame, const Vec3& start, const Vec6& W)
+      : R(frame), p(start), phi(W.head<3>()), rho(W.tail<3>()), maps(lie::RotationMap::both(phi)) {}
+  const lie::RotationMap& exponential() const { return maps[0]; }
+  const lie::RotationMap& tangent() const { return maps[1]; }
+  Mat3 end_frame() const { return R * exponential().matrix(); }
+  Vec3 end() const { return p + R * (tangent() * rho); }
+
+  Mat3 R;
+  Vec3 p;
+  Vec3 phi, rho;
+  std::array<lie::RotationMap, 2> maps;
 };
 
-/// (3), (4): g_{i+1} = g_i exp(l_i hat(xi_i)), from the base's placement and q.
+/// The base of a rod: its placement at rest in the world, and how far it has been turned since (free bases only).
+struct Base {
+  Placement rest;
+  Mat3 turned = Mat3::Identity();
+};
+
+/// A rod in space. Everything below reads it. A twist (omega, v) moves what lies beyond: x' = v + omega x (x - origin).
+struct Configuration {
+  const Rod* rod = nullptr;
+  Vec3 origin = Vec3::Zero();         ///< the base at rest: keeps lever arms short wherever the scene stands
+  std::vector<Mat3> R;                ///< N + 1 frames at the section ends
+  std::vector<Vec3> p;                ///< N + 1 positions [m]
+  std::vector<Coefficients> strains;  ///< N Legendre coefficients, 1 added to the elongation: hat(xi) as it is
+  std::vector<int> first_step;        ///< of each section, N + 1
+  struct StepStart {
+    Mat3 R;
+    Vec3 p;
+    SectionTwists before;  ///< twists that the coordinates of the section give to this frame
+    int piece;             ///< first of its exponentials
+  };
+  std::vector<StepStart> steps;
+  std::vector<Piece> pieces;
+  Matrix6X base;    ///< twists of the base's coordinates
+  Matrix6X twists;  ///< of the strain coordinates, as felt beyond their section
+};
+
+/// (3), (4) from the base's placement and q.
+Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q);
 Configuration configure(const Rod& rod, const Placement& base, const Eigen::VectorXd& q);
+
+/// The exponentials from the start of a step to an abscissa in it, and how they change with it.
+struct Branch {
+  int section = 0, step = 0;  ///< step: in Configuration::steps
+  PartialWeights weights;
+  std::vector<Piece> pieces;
+  Mat3 R;
+  Vec3 p;
+};
+Branch branch(const Configuration& shape, double s);
 
 /// A point on the centreline.
 struct CurvePoint {
   int section = 0;
-  Vec3 position;    ///< gamma(s)
-  Mat3 R;           ///< frame of the cross-section
-  Vec3 derivative;  ///< gamma_s = R u
-  Vec3 second;      ///< gamma_ss = R (k x u), from the section that holds s
+  Vec3 position;         ///< gamma(s)
+  Mat3 R;                ///< frame of the cross-section
+  Vec3 derivative;       ///< gamma_s
+  Vec3 second;           ///< gamma_ss, to the accuracy of the strains
+  SectionTwists twists;  ///< of the coordinates of its own section, as felt at the point
 };
 CurvePoint curve_point(const Configuration& shape, double s);
 
 /// Position of the material point at abscissa s, offset in the cross-section's frame.
 Vec3 position(const Configuration& shape, double s, const Vec3& offset = Vec3::Zero());
 
+/// Twist of every coordinate as felt at abscissa s, 6 x n; zero beyond it.
+Matrix6X twists_at(const Configuration& shape, double s);
+
 /// (5): 3 x n derivative of position() with respect to q.
 Eigen::Matrix3Xd position_jacobian(const Configuration& shape, double s, const Vec3& offset = Vec3::Zero());
 
-/// f . gamma_qs, n values: how the component of gamma_s along f changes with q.
-Eigen::VectorXd tangent_gradient(const Configuration& shape, double s, const Vec3& f);
+/// Velocity of a point at x (from the origin) under a twist.
+inline Vec3 moved(const Vec6& twist, const Vec3& x) { return twist.tail<3>() + twist.head<3>().cross(x); }
 
-/// A force on a material point, and a weight (mass / h^2 in a time step, 0 for a plain force).
-struct PointLoad {
-  double s = 0.0;
-  Vec3 offset = Vec3::Zero();
-  Vec3 force = Vec3::Zero();  ///< [N]
-  double weight = 0.0;        ///< [kg/s^2]
-};
-
-/// With X_i(q) the loaded points and J_i their Jacobians, adds
-///     gradient += sum J_i^T f_i,
-///     tangent  += sum w_i J_i^T J_i + f_i . d2 X_i / dq2     (exact, symmetric),
-/// in one pass from the tip to the base: what lies beyond a section acts on it only through its resultant force,
-/// moment, virial and inertia. `loads` must be sorted by s.
-void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Eigen::Ref<Eigen::VectorXd> gradient,
-               Eigen::Ref<Eigen::MatrixXd> tangent);
+/// Twists of the six numbers W of a piece, 6 x 6, about the origin.
+Mat6 piece_twists(const Piece& piece, const Vec3& origin);
 
 }  // namespace sinew::rod

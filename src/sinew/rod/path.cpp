@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sinew/lie/rotation.hpp"
-#include "sinew/rod/kinematics.hpp"
+#include "sinew/rod/forces.hpp"
 
 namespace sinew::rod {
 
@@ -78,61 +78,101 @@ Mat3 frame_along(const Vec3& tangent, const Vec3& up) {
   return Mat3::Identity();  // not reached: y and z are not both parallel to x
 }
 
-Layout lay_along(const Path& path, const std::vector<double>& ends, const Vec3& up) {
-  const int N = static_cast<int>(ends.size()) - 1;
-  Layout layout;
-  layout.base = {frame_along(path.tangent(0.0), up), path.position(0.0)};
+namespace {
 
-  // Mean curvature of each section: the rotation from its first to its last tangent, carried along in small steps.
-  layout.strains.setZero(6, N);
-  Mat3 R = layout.base.R;
-  for (int i = 0; i < N; ++i) {
+/// Mean curvature of each section: the rotation from its first to its last tangent, carried along in small steps.
+std::vector<Vec3> mean_curvatures(const Path& path, const std::vector<double>& ends, Mat3 R) {
+  std::vector<Vec3> curvatures;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const Mat3 start = R;
     constexpr int kSteps = 16;
     for (int k = 1; k <= kSteps; ++k) {
       const Vec3 t = path.tangent(ends[i] + (ends[i + 1] - ends[i]) * k / kSteps);
       R = lie::exp(lie::shortest_rotation(R.col(0), t)) * R;
     }
-    layout.strains.col(i).head<3>() = lie::log(start.transpose() * R) / (ends[i + 1] - ends[i]);
-    layout.strains(0, i) = 0.0;
+    curvatures.emplace_back(lie::log(start.transpose() * R) / (ends[i + 1] - ends[i]));
+  }
+  return curvatures;
+}
+
+/// A rod that may only bend, and points on it that shall lie on the path: as many a section as it has degrees of
+/// freedom.
+struct Fit {
+  Rod rod;
+  Placement base;
+  std::vector<double> at;
+  std::vector<Vec3> goal;
+  Eigen::VectorXd stay;  ///< weight of the change of each coordinate
+
+  Fit(const Path& path, const std::vector<double>& ends, int degree, const Placement& start) : base(start) {
+    Discretisation cut;
+    cut.ends = ends;
+    cut.modes = modes_of({1, 2}, {0, degree, degree, 0, 0, 0});
+    rod = make_rod(cut, {});
+    stay.resize(rod.strain_coordinates());
+    for (int i = 0; i < rod.count(); ++i) {
+      const double l = rod.sections[i].length();
+      // Positions are met only as far as the curvatures stay near those of the path: one section length of
+      // displacement weighs as much as one unit of turning, so that fitted rods do not wave between their section ends.
+      stay.segment(rod.first[i], rod.first[i + 1] - rod.first[i]).setConstant(1e-4 * l * l * l * l);
+      for (int k = 1; k <= degree + 1; ++k) {
+        at.push_back(rod.sections[i].begin + l * k / (degree + 1));
+        goal.push_back(path.position(at.back()));
+      }
+    }
   }
 
-  // Levenberg-Marquardt on the two bendings: section ends onto the path.
-  Rod rod;
-  rod.ends = ends;
-  rod.basis = {1, 2};
-  rod.fixed.setZero(6, N);
-  Eigen::VectorXd q(2 * N);
-  for (int i = 0; i < N; ++i) q.segment<2>(2 * i) = layout.strains.block<2, 1>(1, i);
-  const auto residual = [&](const Eigen::VectorXd& trial) {
-    const Configuration shape = configure(rod, layout.base, trial);
-    Eigen::VectorXd r(3 * N);
-    for (int i = 1; i <= N; ++i) r.segment<3>(3 * i - 3) = shape.p[i] - path.position(ends[i]);
-    return r;
-  };
-  Eigen::VectorXd r = residual(q);
-  // Positions are met only as far as the curvatures stay near those of the path: one section length of displacement
-  // weighs as much as one unit of turning, so that fitted rods do not wave between their section ends.
-  const double stay = 1e-2;
-  const Eigen::VectorXd q0 = q;
-  for (int iteration = 0; iteration < 10 && r.norm() > 1e-12 * path.length(); ++iteration) {
-    const Configuration shape = configure(rod, layout.base, q);
-    Eigen::MatrixXd J(3 * N, 2 * N);
-    for (int i = 1; i <= N; ++i) J.middleRows<3>(3 * i - 3) = position_jacobian(shape, ends[i]);
-    Eigen::VectorXd weight(2 * N);
-    for (int i = 0; i < N; ++i) {
-      const double l = ends[i + 1] - ends[i];
-      weight.segment<2>(2 * i).setConstant(stay * stay * l * l * l * l);
+  /// Gradient and Gauss-Newton matrix of 1/2 |gaps|^2 + 1/2 |q - q0|^2_stay, and the largest gap.
+  double linearize(const Eigen::VectorXd& q, const Eigen::VectorXd& q0, Eigen::VectorXd& gradient,
+                   linalg::Chain& matrix) const {
+    const Configuration shape = configure(rod, base, q);
+    std::vector<PointLoad> pulls, weights;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Vec3 gap = position(shape, at[i]) - goal[i];
+      largest = std::max(largest, gap.norm());
+      pulls.push_back({at[i], Vec3::Zero(), gap});
+      weights.push_back({at[i], Vec3::Zero(), Vec3::Zero(), 1.0});
     }
-    Eigen::MatrixXd normal = J.transpose() * J;
-    normal.diagonal() += weight;
-    const Eigen::VectorXd dq = -normal.ldlt().solve(J.transpose() * r + weight.cwiseProduct(q - q0));
-    q += dq;
-    r = residual(q);
+    Equations forces = make_equations(shape, true), inertia = make_equations(shape, true);
+    add_loads(shape, pulls, forces);
+    add_loads(shape, weights, inertia);
+    gradient = forces.r + stay.cwiseProduct(q - q0);
+    matrix = inertia.chain;
+    for (int i = 0; i < rod.count(); ++i)
+      matrix.block(i).diagonal() += stay.segment(rod.first[i], rod.first[i + 1] - rod.first[i]);
+    return largest;
+  }
+};
+
+}  // namespace
+
+Layout lay_along(const Path& path, const std::vector<double>& ends, const Vec3& up, int degree) {
+  Layout layout;
+  layout.base = {frame_along(path.tangent(0.0), up), path.position(0.0)};
+  const Fit fit(path, ends, degree, layout.base);
+  const std::vector<Vec3> curvatures = mean_curvatures(path, ends, layout.base.R);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(fit.rod.strain_coordinates());
+  for (int i = 0; i < fit.rod.count(); ++i) {
+    for (std::size_t c = 0; c < fit.rod.sections[i].modes.size(); ++c) {
+      const Mode& mode = fit.rod.sections[i].modes[c];
+      if (mode.degree == 0) q[fit.rod.first[i] + static_cast<int>(c)] = curvatures[i][mode.strain];
+    }
+  }
+  const Eigen::VectorXd q0 = q;
+  Eigen::VectorXd gradient;
+  linalg::Chain matrix;
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    layout.deviation = fit.linearize(q, q0, gradient, matrix);
+    linalg::ChainFactor factor;
+    if (layout.deviation <= 1e-12 * path.length() || !factor.factor(matrix)) break;
+    const Eigen::VectorXd dq = factor.solve(gradient);
+    q -= dq;
     if (dq.norm() <= 1e-12 * (1.0 + q.norm())) break;
   }
-  for (int i = 0; i < N; ++i) layout.strains.block<2, 1>(1, i) = q.segment<2>(2 * i);
-  for (int i = 0; i < N; ++i) layout.deviation = std::max(layout.deviation, r.segment<3>(3 * i).norm());
+  layout.deviation = fit.linearize(q, q0, gradient, matrix);
+  for (int i = 0; i < fit.rod.count(); ++i)
+    layout.strains.push_back(strain_coefficients(fit.rod.sections[i], fit.rod.of_section(q, i)));
   return layout;
 }
 

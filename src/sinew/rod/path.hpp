@@ -20,20 +20,20 @@ class Path {
   std::vector<Vec3> x_, t_;  ///< positions and unit tangents at the samples
 };
 
-/// Where a rod laid along a path starts, and its full strains.
+/// Where a rod laid along a path starts, and its strains.
 struct Layout {
-  Placement base;                                    ///< x along the path, y from `up`, z = x cross y
-  Eigen::Matrix<double, 6, Eigen::Dynamic> strains;  ///< 6 x N: bending only
-  double deviation = 0.0;  ///< [m] largest distance between the path and the rod at section ends
+  Placement base;                     ///< x along the path, y from `up`, z = x cross y
+  std::vector<Coefficients> strains;  ///< of each section: bending only
+  double deviation = 0.0;  ///< [m] largest distance between the path and the rod at the points that were fitted
 };
 
 /// Frame with x along the tangent and y along the part of `up` across it; where `up` is parallel, along that of (0, 1,
 /// 0), and of (0, 0, 1) if that is parallel too.
 Mat3 frame_along(const Vec3& tangent, const Vec3& up);
 
-/// The bending strains of sections with the given ends (0 .. the path's length) that follow the path: the mean
-/// curvature of each section in a frame carried along by parallel transport, then corrected so that the section ends
-/// lie on the path as closely as N constant curvatures can.
-Layout lay_along(const Path& path, const std::vector<double>& ends, const Vec3& up);
+/// The bending strains, polynomials of the given degree in each section, that follow the path: from the mean curvature
+/// of each section in a frame carried along by parallel transport, corrected so that the section ends (and degree
+/// points between them) lie on the path as closely as so many strains can. `ends` run from 0 to the path's length.
+Layout lay_along(const Path& path, const std::vector<double>& ends, const Vec3& up, int degree = 0);
 
 }  // namespace sinew::rod

@@ -1,20 +1,24 @@
-// A discrete Cosserat rod: N sections, the strain constant along each, some of the six strains free.
+// A discrete Cosserat rod: sections whose strains vary along them as Legendre polynomials of chosen degree.
 //
-//     xi = B q + xi_bar      strain(): a section's strain from its coordinates, the one home of this equation
+//     xi(s) = B(s) q + xi_bar(s)      strain(): the strain from the coordinates, the one home of this equation
 //
-//     g' = g hat(xi)         rod/kinematics: integrated exactly over a section, (3) and (4)
+//     g' = g hat(xi)                  rod/kinematics: (3) and (4)
 //
+// xi_bar is the stress-free strain of all six; q = 0 is the rod at rest. Constant strains (degree 0) are the paper's.
 // The maths is in README.md of this folder.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
+
+#include "sinew/rod/integration.hpp"
+#include "sinew/rod/profile.hpp"
 
 namespace sinew::rod {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 /// A rigid placement in space.
 struct Placement {
@@ -22,8 +26,34 @@ struct Placement {
   Vec3 p = Vec3::Zero();
 };
 
-/// What the base may do beyond its prescribed placement: slide along -x, turn about +x of its rest frame.
-enum class BaseAxis { translation, rotation };
+/// A motion of the base beyond its prescribed placement: along or about sign times an axis of its rest frame.
+struct BaseMotion {
+  bool turns = false;
+  int axis = 0;  ///< 0, 1, 2
+  double sign = 1.0;
+  bool operator==(const BaseMotion&) const = default;
+};
+
+inline constexpr std::array<const char*, 6> kStrainNames = {"torsion",    "bending_y", "bending_z",
+                                                            "elongation", "shear_y",   "shear_z"};
+
+/// A free strain of a section: its number 0..5 in the order (torsion, bending_y, bending_z, elongation, shear_y,
+/// shear_z) and the degree of its Legendre polynomial over the section.
+struct Mode {
+  int strain = 0;
+  int degree = 0;
+  bool operator==(const Mode&) const = default;
+};
+
+struct Section {
+  double begin = 0.0, end = 0.0;  ///< [m]
+  std::vector<Mode> modes;        ///< its coordinates, in this order
+  Coefficients rest;              ///< Legendre coefficients of the stress-free strains [1/m, -]
+  Eigen::MatrixXd stiffness;      ///< elastic forces are stiffness * q: int B^T K B ds
+  Eigen::MatrixXd damping;        ///< viscous forces are damping * qdot
+  std::vector<Step> steps;        ///< of integration
+  double length() const { return end - begin; }
+};
 
 /// A material point that carries mass: an abscissa, an offset in the cross-section's plane and kilograms.
 struct MassPoint {
@@ -32,38 +62,51 @@ struct MassPoint {
   double mass = 0.0;           ///< [kg]
 };
 
-/// Geometry, stiffness and mass. Strains are (torsion, bending_y, bending_z [1/m], elongation, shear_y, shear_z [-]).
 struct Rod {
-  std::vector<double> ends;                        ///< N + 1 abscissae [m], 0 first, the length last
-  std::vector<int> basis;                          ///< free strains, ascending numbers 0..5
-  Eigen::Matrix<double, 6, Eigen::Dynamic> fixed;  ///< 6 x N strains outside the basis (0 inside it): xi_bar
-  Eigen::VectorXd rest;                            ///< N * basis.size() stress-free values of the free strains
-  std::vector<Vec6> stiffness;                     ///< N section stiffnesses [N m^2, N]
-  std::vector<BaseAxis> base;                      ///< free base coordinates, first in q
-  std::vector<MassPoint> masses;                   ///< sorted by s; empty for a massless rod
-  double radius = 0.0;                             ///< [m]
+  std::vector<Section> sections;
+  std::vector<int> first;         ///< first strain coordinate of each section, and the number of all at the end
+  std::vector<BaseMotion> base;   ///< first in q; translations before turns
+  std::vector<MassPoint> masses;  ///< sorted by s; empty for a massless rod
+  Profile profile;                ///< what it is made of along its length
 
-  int sections() const { return static_cast<int>(ends.size()) - 1; }
-  int strains() const { return static_cast<int>(basis.size()); }
+  int count() const { return static_cast<int>(sections.size()); }
   int base_coordinates() const { return static_cast<int>(base.size()); }
-  /// Size of q = (base coordinates, strains of section 0, of section 1, ...).
-  int coordinates() const { return base_coordinates() + sections() * strains(); }
-  int first_coordinate(int section) const { return base_coordinates() + section * strains(); }
-  double length() const { return ends.back(); }
-  double section_length(int i) const { return ends[i + 1] - ends[i]; }
+  int strain_coordinates() const { return first.back(); }
+  /// Size of q = (base coordinates, coordinates of section 0, of section 1, ...).
+  int coordinates() const { return base_coordinates() + strain_coordinates(); }
+  double length() const { return sections.back().end; }
   /// The section that holds abscissa s; the first or last one beyond the ends.
   int section_at(double s) const;
+  /// Coordinates of section i in q.
+  auto of_section(const Eigen::VectorXd& q, int i) const {
+    return q.segment(base_coordinates() + first[i], first[i + 1] - first[i]);
+  }
 };
 
-/// All six strains of a section: xi = B q + xi_bar.
-Vec6 strain(const Rod& rod, const Eigen::VectorXd& q, int section);
+/// How a rod is cut and what may vary in it.
+struct Discretisation {
+  std::vector<double> ends;        ///< [m] N + 1 abscissae, 0 first, the length last
+  std::vector<Mode> modes;         ///< of every section
+  std::vector<Coefficients> rest;  ///< of each section; empty: straight
+};
 
-/// Coordinates of the stress-free rod with its base at rest.
-Eigen::VectorXd rest_coordinates(const Rod& rod);
+/// Sections, stiffness, damping and masses from the profile; the base is left clamped.
+Rod make_rod(const Discretisation& discretisation, const Profile& profile);
 
-/// Masses of a round rod of the given density: per section three Gauss points, at each four points that share the
-/// cross-section's mass and stand off the axis by radius / sqrt(2), which gives the section's own rotary inertia.
-/// Exact for the kinetic energy of a section whose points move quadratically along it.
-std::vector<MassPoint> round_rod_masses(const std::vector<double>& ends, double radius, double density);
+/// Modes of the given strains: degrees 0 .. order[strain] of each.
+std::vector<Mode> modes_of(const std::vector<int>& strains, const std::array<int, 6>& order = {});
+
+/// Legendre coefficients of all six strains in a section: those of B q + xi_bar.
+Coefficients strain_coefficients(const Section& section, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+/// The strains at an abscissa: xi = B q + xi_bar.
+Vec6 strain(const Rod& rod, const Eigen::VectorXd& q, double s);
+
+/// Their deviation from the stress-free ones: B q.
+Vec6 deviation(const Rod& rod, const Eigen::VectorXd& q, double s);
+
+/// The q for which the strains are, in every section, as near to the given ones as its modes allow: in the mean over
+/// the section, weighted with nothing. `strains` holds Legendre coefficients per section.
+Eigen::VectorXd coordinates_of(const Rod& rod, const std::vector<Coefficients>& strains);
 
 }  // namespace sinew::rod

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "sinew/constraint/independent.hpp"
-#include "sinew/rod/kinematics.hpp"
+#include "sinew/constraint/sliding.hpp"
 #include "sinew/rod/path.hpp"
 #include "sinew/sim/building.hpp"
 
@@ -54,13 +54,14 @@ Eigen::MatrixXd weight_gram(const SolidModel& solid, const std::vector<PointMode
 /// Gram matrix of points that the body holds still: what the rod's own coordinates can do there, across it, and along
 /// it at an anchor.
 Eigen::MatrixXd reach_gram(const RodModel& rod, const std::vector<PointModel>& points) {
-  const auto shape = rod::configure(rod.rod, rod.base, rod::rest_coordinates(rod.rod));
+  const auto shape = start_shape(rod);
   std::vector<Eigen::MatrixXd> rows;
   for (const PointModel& point : points) {
-    Eigen::MatrixXd J = rod::position_jacobian(shape, point.abscissa);
+    const double s = std::min(point.abscissa, rod.rod.length());
+    Eigen::MatrixXd J = rod::position_jacobian(shape, s);
     J.leftCols(rod.rod.base_coordinates()).setZero();
-    rows.emplace_back(rod::curve_point(shape, point.abscissa).R.transpose() * J);
-    if (!point.anchor) rows.back().row(0).setZero();
+    rows.emplace_back(rod::curve_point(shape, s).R.transpose() * J);
+    if (!point.fixed) rows.back().row(0).setZero();
   }
   const auto n = static_cast<Eigen::Index>(points.size());
   Eigen::MatrixXd gram(n, n);
@@ -75,35 +76,34 @@ Eigen::MatrixXd reach_gram(const RodModel& rod, const std::vector<PointModel>& p
 /// of earlier couplings of the same rod and solid count as there already; anchors always stay.
 std::vector<PointModel> independent_points(Model& model, const std::vector<PointModel>& candidates,
                                            CouplingFacts& facts) {
-  const RodModel& rod = model.rods[candidates[0].rod];
+  const Line line = candidates[0].line;
   const SolidModel& solid = model.solids[candidates[0].solid];
   std::vector<PointModel> kept;
   const auto keep = [&](bool held) {
     const auto of_this_kind = [&](const PointModel& point) { return all_clamped(solid, point.where) == held; };
     std::vector<PointModel> points;
     for (const PointModel& point : model.points) {
-      if (point.rod == candidates[0].rod && point.solid == candidates[0].solid && of_this_kind(point))
-        points.push_back(point);
+      if (point.line == line && point.solid == candidates[0].solid && of_this_kind(point)) points.push_back(point);
     }
     const auto earlier = static_cast<int>(points.size());
     std::vector<PointModel> others;
     for (const PointModel& point : candidates) {
       if (!of_this_kind(point)) continue;
-      if (held && !rod.geometric && !point.anchor && point.abscissa <= 1e-9 * rod.length()) {
+      if (held && line.rod >= 0 && !point.fixed && point.abscissa <= 1e-9 * length_of(model, line)) {
         facts.no_unknown.push_back(point.abscissa);
       } else {
-        (point.anchor ? points : others).push_back(point);
+        (point.fixed ? points : others).push_back(point);
       }
     }
     const auto forced = static_cast<int>(points.size());
     points.insert(points.end(), others.begin(), others.end());
     if (points.empty()) return;
     std::vector<int> numbers;
-    if (held && rod.geometric) {  // its points are free to be anywhere
+    if (held && line.cable >= 0) {  // its points are free to be anywhere
       for (int i = 0; i < static_cast<int>(points.size()); ++i) numbers.push_back(i);
     } else {
-      numbers =
-          constraint::independent_rows(held ? reach_gram(rod, points) : weight_gram(solid, points), kNewPart, forced);
+      numbers = constraint::independent_rows(
+          held ? reach_gram(model.rods[line.rod], points) : weight_gram(solid, points), kNewPart, forced);
       std::sort(numbers.begin(), numbers.end());
     }
     for (int i = earlier; i < static_cast<int>(points.size()); ++i) {
@@ -124,60 +124,99 @@ std::vector<PointModel> independent_points(Model& model, const std::vector<Point
 
 }  // namespace
 
-void build_coupling(Model& model, int number, const Slide& slide) {
-  const std::string path = "couplings." + std::to_string(number) + ".slide";
-  const int rod = find(model.scene.rods, slide.rod, path + ".rod", "rod");
-  const int solid = find(model.scene.solids, slide.solid, path + ".solid", "solid");
-  const RodModel& rod_model = model.rods[rod];
-  const double length = rod_model.length();
+namespace {
+
+/// Where the points of a slide are asked for: abscissae and positions in the world at t = 0.
+struct Asked {
   std::vector<double> abscissae;
+  std::vector<Vec3> positions;
+};
+
+Asked points_on_rod(const Model& model, const Line& line, const Slide& slide, const std::string& path) {
+  const double length = length_of(model, line);
+  Asked asked;
   if (const int* count = std::get_if<int>(&slide.points)) {
     if (*count < 1)
       reject(path + ".points", std::to_string(*count), "must be at least 1",
              "one point per 5 mm of cable is a good start");
-    for (int i = 0; i < *count; ++i) abscissae.push_back(*count == 1 ? length : length * i / (*count - 1));
+    for (int i = 0; i < *count; ++i) asked.abscissae.push_back(*count == 1 ? length : length * i / (*count - 1));
   } else {
-    abscissae = std::get<std::vector<double>>(slide.points);
+    asked.abscissae = std::get<std::vector<double>>(slide.points);
   }
-  if (abscissae.empty())
+  if (asked.abscissae.empty())
     reject(path + ".points", "", "needs at least one point", "give a count or a list of abscissae");
-  const bool anchored = slide.anchor_tip == AnchorTip::position;
-  if (anchored) {
-    if (std::abs(abscissae.back() - length) > 1e-6 * length) {
-      reject(path + ".points", text(abscissae.back()) + " m",
+  for (const double s : asked.abscissae) {
+    if (!(s >= 0.0 && s <= length * (1.0 + 1e-6)))
+      reject(path + ".points", text(s) + " m", "must lie on the rod, from 0 to " + text(length) + " m",
+             "measure along the rod from its base");
+  }
+  if (slide.anchor_tip != AnchorTip::none) {
+    if (std::abs(asked.abscissae.back() - length) > 1e-6 * length) {
+      reject(path + ".points", text(asked.abscissae.back()) + " m",
              "the last point holds the tip, so it must be the rod's length, " + text(length) + " m",
              "end the list with the length, or write `anchor_tip: none`");
     }
-    abscissae.back() = length;
-  } else if (rod_model.geometric) {
-    reject(path + ".anchor_tip", "none", "a geometric cable must be anchored", "write `anchor_tip: position`");
+    asked.abscissae.back() = length;
   }
-
-  CouplingFacts facts;
-  facts.asked = static_cast<int>(abscissae.size());
-  const rod::Placement base = rod_model.base;
-  std::vector<PointModel> candidates;
-  std::vector<Vec3> positions;
-  if (rod_model.geometric) {  // on the path itself
-    const rod::Path curve(path_in_world(model.scene, rod_model.frame, model.scene.rods[rod].second));
-    for (double s : abscissae) positions.push_back(curve.position(s));
+  if (line.cable >= 0) {  // on the path itself
+    const rod::Path curve(model.cables[line.cable].path);
+    for (const double s : asked.abscissae) asked.positions.push_back(curve.position(s));
   } else {
-    const auto shape = rod::configure(rod_model.rod, base, rod::rest_coordinates(rod_model.rod));
-    for (double s : abscissae) positions.push_back(rod::position(shape, s));
+    const auto shape = start_shape(model.rods[line.rod]);
+    for (double& s : asked.abscissae) asked.positions.push_back(rod::position(shape, s = std::min(s, length)));
   }
-  for (std::size_t i = 0; i < abscissae.size(); ++i) {
-    if (abscissae[i] < 0.0 || abscissae[i] > length * (1.0 + 1e-12)) {
-      reject(path + ".points", text(abscissae[i]) + " m", "must lie on the rod, from 0 to " + text(length) + " m",
-             "measure along the rod from its base");
-    }
+  return asked;
+}
+
+/// Points given in the solid; where the rod does not reach them yet, their abscissae lie beyond its tip.
+Asked points_in_channel(const Model& model, const Line& line, int solid, const Slide& slide, const std::string& path) {
+  if (line.cable >= 0)
+    reject(path + ".channel", "", "a geometric cable runs through points of its path", "give `points`");
+  if (slide.anchor_tip != AnchorTip::none)
+    reject(path + ".anchor_tip", slide.anchor_tip == AnchorTip::pose ? "pose" : "position",
+           "a rod that slides in a channel has a free tip", "write `anchor_tip: none`");
+  const auto shape = start_shape(model.rods[line.rod]);
+  const Placement pose = stand(model.scene, model.solids[solid].frame, model.scene.solids[solid].second.pose);
+  Asked asked;
+  double s = 0.0;
+  for (const Vec3& x : slide.channel) {
+    asked.positions.push_back(apply(pose, x));
+    s = constraint::project(shape, s, asked.positions.back());
+    if (s < 0.0)
+      reject(path + ".channel", text(x) + " m", "lies behind the base of the rod",
+             "list the points in the order in which the rod reaches them, the first ahead of its base");
+    asked.abscissae.push_back(s);
+  }
+  return asked;
+}
+
+}  // namespace
+
+void build_slide(Model& model, int number, const Slide& slide) {
+  const std::string path = "couplings." + std::to_string(number) + ".slide";
+  const Line line = find_line(model, slide.rod, path + ".rod");
+  const int solid = find(model.scene.solids, slide.solid, path + ".solid", "solid");
+  if (line.cable >= 0 && slide.anchor_tip != AnchorTip::position)
+    reject(path + ".anchor_tip", slide.anchor_tip == AnchorTip::none ? "none" : "pose",
+           "a geometric cable must be anchored by its position", "write `anchor_tip: position`");
+  const Asked asked = slide.channel.empty() ? points_on_rod(model, line, slide, path)
+                                            : points_in_channel(model, line, solid, slide, path);
+  CouplingFacts facts;
+  facts.rod = line.rod;
+  facts.cable = line.cable;
+  facts.asked = static_cast<int>(asked.abscissae.size());
+  std::vector<PointModel> candidates;
+  for (std::size_t i = 0; i < asked.abscissae.size(); ++i) {
     PointModel& point = candidates.emplace_back();
-    point.rod = rod;
+    point.line = line;
     point.solid = solid;
     point.coupling = number;
-    point.abscissa = abscissae[i];
-    point.anchor = anchored && i + 1 == abscissae.size();
-    point.where = embed_within(model.solids[solid], positions[i], slide.reach, path + ".points",
-                               "the point at " + text(abscissae[i]) + " m of the rod");
+    point.abscissa = asked.abscissae[i];
+    point.fixed = slide.anchor_tip != AnchorTip::none && i + 1 == asked.abscissae.size();
+    const std::string what = slide.channel.empty() ? "the point at " + text(asked.abscissae[i]) + " m of the rod"
+                                                   : "point " + std::to_string(i) + " of the channel";
+    point.where = embed_within(model.solids[solid], asked.positions[i], slide.reach,
+                               path + (slide.channel.empty() ? ".points" : ".channel"), what);
     if (point.where.distance > 0.0) ++facts.outside;
     facts.farthest = std::max(facts.farthest, point.where.distance);
   }
@@ -185,6 +224,9 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   facts.kept = static_cast<int>(kept.size());
   model.points.insert(model.points.end(), kept.begin(), kept.end());
   model.couplings.push_back(facts);
+  if (slide.anchor_tip == AnchorTip::pose)
+    tie_axes(model, number, line.rod, candidates.back().abscissa, solid, asked.positions.back(),
+             candidates.back().where, {}, {0, 1, 2});
 }
 
 }  // namespace sinew::building

@@ -1,5 +1,6 @@
 #include "sinew/sim/building.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -27,6 +28,38 @@ void require_positive(double value, const std::string& path, const std::string& 
 int find_frame(const Scene& scene, const std::optional<std::string>& name, const std::string& path) {
   return name ? find(scene.frames, *name, path + ".frame", "frame") : -1;
 }
+
+Line find_line(const Model& model, const std::string& name, const std::string& path) {
+  find(model.scene.rods, name, path, "rod");
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    if (model.rods[i].name == name) return {static_cast<int>(i), -1};
+  }
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    if (model.cables[i].name == name) return {-1, static_cast<int>(i)};
+  }
+  return {};
+}
+
+int find_rod(const Model& model, const std::string& name, const std::string& path) {
+  const Line line = find_line(model, name, path);
+  if (line.rod < 0)
+    reject(path, name, "a geometric cable has no material points", "use `cable: cosserat`, or a point of the solid");
+  return line.rod;
+}
+
+double length_of(const Model& model, const Line& line) {
+  return line.rod >= 0 ? model.rods[line.rod].rod.length() : model.cables[line.cable].cable.length;
+}
+
+double abscissa_on(const Model& model, int rod, const std::optional<double>& at, const std::string& path) {
+  const double length = model.rods[rod].rod.length();
+  if (!at) return length;
+  if (!(*at >= 0.0 && *at <= length * (1.0 + 1e-9)))
+    reject(path, text(*at) + " m", "must lie on the rod, from 0 to " + text(length) + " m", "measure from the base");
+  return std::min(*at, length);
+}
+
+rod::Configuration start_shape(const RodModel& rod) { return rod::configure(rod.rod, rod.base, rod.start); }
 
 Placement stand(const Scene& scene, int frame, const Pose& pose) {
   const Placement own = placement(pose);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sinew/error/input_error.hpp"
+#include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/model.hpp"
 
 namespace sinew::building {
@@ -40,14 +41,39 @@ constexpr double kSmallest = 1e-9, kLargest = 1e6;  // [m]
 
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
+CableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
 
-/// The points of the path of a rod, in the world.
-std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod);
+/// The points of the path of a rod, judged, in the world.
+std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod, const std::string& path);
+
+/// Frees a motion of the base; false if it is free already. Translations stand before turns.
+bool add_base_motion(RodModel& model, const rod::BaseMotion& motion);
+
+/// Number of a rod or cable by name.
+Line find_line(const Model& model, const std::string& name, const std::string& path);
+/// The same, but a cable is refused: it has no material points.
+int find_rod(const Model& model, const std::string& name, const std::string& path);
+
+double length_of(const Model& model, const Line& line);
+
+/// An abscissa on a rod: given, or the tip; rejected outside.
+double abscissa_on(const Model& model, int rod, const std::optional<double>& at, const std::string& path);
+
+/// A rod at the start of the run.
+rod::Configuration start_shape(const RodModel& rod);
 
 /// The element that carries x, rejected beyond the reach.
 solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
                                   const std::string& path, const std::string& what);
 
-void build_coupling(Model& model, int number, const Slide& slide);
+void build_slide(Model& model, int number, const Slide& slide);
+void build_tie(Model& model, int number, const Tie& tie);
+void build_actuator(Model& model, const std::string& name, const Actuator& actuator);
+void build_load(Model& model, const std::string& name, const Load& load);
+void build_output(Model& model, const std::string& name, const Output& output);
+
+/// Ties the axes of a rod's cross-section to the solid that holds it, position left to others.
+void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Vec3& point,
+              const solid::EmbeddedPoint& where, const std::vector<int>& along, const std::vector<int>& about);
 
 }  // namespace sinew::building

@@ -8,29 +8,35 @@
 namespace sinew {
 
 StepContext make_context(const Model& model, const State& start, const Command& command, double h) {
-  StepContext context{model, start, h, command, {}, {}, {}};
+  const double rate = model.scene.analysis == Analysis::dynamic ? 1.0 / h : 0.0;
+  StepContext context{model, start, h, rate, command, model.scene.gravity, {}, {}, {}, {}};
   for (const auto& [name, frame] : model.scene.frames)
     context.displacement.push_back(frame_displacement(frame, start.time + h));
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const SolidState& state = start.solids[i];
-    context.solids.push_back({state.x, state.v, solid::rotations(model.solids[i].body, state.x), h});
+    context.solids.push_back({state.x, state.v, solid::rotations(model.solids[i].body, state.x), rate});
   }
   for (const RodModel& rod : model.rods) context.bases.push_back(compose(context.moved(rod.frame), rod.base));
+  for (const CableModel& cable : model.cables)
+    context.cable_bases.push_back(compose(context.moved(cable.frame), cable.base));
   return context;
 }
+
+namespace {
+
+bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
+
+}  // namespace
 
 SolidForces solid_forces(const StepContext& context, const State& iterate, int number) {
   const solid::Body& body = context.model.solids[number].body;
   SolidForces forces;
-  Eigen::Matrix3Xd r = solid::residual(body, context.solids[number], iterate.solids[number].x,
-                                       context.model.scene.gravity, &forces.scale);
-  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
-    const PointModel& point = context.model.points[k];
-    if (point.solid != number || !iterate.points[k].on) continue;
-    for (int c = 0; c < 4; ++c) {
-      r.col(body.tetrahedra[point.where.element][c]) -=
-          point.where.weights[c] * iterate.points[k].lambda;  // + H^T lambda
-    }
+  Eigen::Matrix3Xd r =
+      solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, &forces.scale);
+  for (const SolidRow& row : context.model.solid_rows) {
+    if (row.solid != number || !is_on(iterate, row)) continue;
+    for (int c = 0; c < 4; ++c)
+      r.col(body.tetrahedra[row.where.element][c]) -= row.where.weights[c] * iterate.lambda.segment<3>(row.row);  // H^T
   }
   forces.r.resize(3 * body.free_nodes);
   for (int i = 0; i < body.nodes(); ++i) {
@@ -54,7 +60,7 @@ void assemble(const StepContext& context, const SolidModel& model, const solid::
       if (at[i] >= 0) values[at[i]] += block(i % 3, i / 3);
     }
   });
-  const Eigen::VectorXd mass = solid::mass_diagonal(model.body, context.h);
+  const Eigen::VectorXd mass = solid::mass_diagonal(model.body, context.rate);
   for (int i = 0; i < model.body.nodes(); ++i) {
     if (model.body.unknown[i] < 0) continue;
     for (int c = 0; c < 3; ++c) values[model.diagonal[3 * model.body.unknown[i] + c]] += mass[i];
@@ -85,19 +91,20 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
 
   const Clock clock(times.compliance);
   free.stiffness = memory.matrix.diagonal().maxCoeff();
-  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
-    if (context.model.points[k].solid == number) free.points.push_back(static_cast<int>(k));
+  const std::vector<SolidRow>& all = context.model.solid_rows;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].solid == number) free.rows.push_back(static_cast<int>(k));
   }
-  const auto columns = static_cast<Eigen::Index>(3 * free.points.size());
+  const auto columns = static_cast<Eigen::Index>(3 * free.rows.size());
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(forces.r.size(), columns + 1);
   right.col(columns) = -forces.r;
-  for (std::size_t k = 0; k < free.points.size(); ++k) {
-    const PointModel& point = context.model.points[free.points[k]];
-    if (!iterate.points[free.points[k]].on) continue;
+  for (std::size_t k = 0; k < free.rows.size(); ++k) {
+    const SolidRow& row = all[free.rows[k]];
+    if (!is_on(iterate, row)) continue;
     for (int c = 0; c < 4; ++c) {
-      const int node = model.body.unknown[model.body.tetrahedra[point.where.element][c]];
+      const int node = model.body.unknown[model.body.tetrahedra[row.where.element][c]];
       if (node < 0) continue;
-      for (int i = 0; i < 3; ++i) right(3 * node + i, static_cast<Eigen::Index>(3 * k) + i) = point.where.weights[c];
+      for (int i = 0; i < 3; ++i) right(3 * node + i, static_cast<Eigen::Index>(3 * k) + i) = row.where.weights[c];
     }
   }
   Eigen::MatrixXd half = memory.cholesky.half_solve(right);
@@ -110,9 +117,9 @@ Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& w
                                   int number, const Eigen::VectorXd& dlambda) {
   const solid::Body& body = context.model.solids[number].body;
   Eigen::VectorXd y = free.y;
-  for (std::size_t k = 0; k < free.points.size(); ++k) {
+  for (std::size_t k = 0; k < free.rows.size(); ++k) {
     y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
-         dlambda.segment<3>(context.model.points[free.points[k]].row);
+         dlambda.segment<3>(context.model.solid_rows[free.rows[k]].row);
   }
   const Eigen::VectorXd dx = workspace.solids[number].cholesky.back_solve(y);
   Eigen::Matrix3Xd motion = Eigen::Matrix3Xd::Zero(3, body.nodes());

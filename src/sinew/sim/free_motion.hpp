@@ -1,6 +1,7 @@
 // (10): how a volume moves in a step when the multipliers keep their values, and what one more newton would change.
 #pragma once
 
+#include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/step.hpp"
 
 namespace sinew {
@@ -9,15 +10,22 @@ namespace sinew {
 struct StepContext {
   const Model& model;
   const State& start;
-  double h = 0.0;
+  double h = 0.0;                       ///< [s]
+  double rate = 0.0;                    ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
   Command command;                      ///< at the end of the step
+  Vec3 gravity;                         ///< [m/s^2] then
   std::vector<Placement> displacement;  ///< of each frame, at the end of the step
   std::vector<solid::StepStart> solids;
-  std::vector<Placement> bases;  ///< of each rod, at the end of the step
+  std::vector<Placement> bases, cable_bases;  ///< of each rod and cable, at the end of the step
 
   Placement moved(int frame) const { return frame < 0 ? Placement{} : displacement[frame]; }
 };
 StepContext make_context(const Model& model, const State& start, const Command& command, double h);
+
+/// What a rod stands on at the end of the step.
+inline rod::Base base_of(const StepContext& context, const State& iterate, int rod) {
+  return {context.bases[rod], iterate.rods[rod].turned};
+}
 
 /// Unbalanced force of one volume at an iterate, multipliers included.
 struct SolidForces {
@@ -31,9 +39,9 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
 ///     y = -L^-1 P r,   X = L^-1 P H^T   so that   H dx = X^T y + X^T X dlambda,   dx = P^T L^-T (y + X dlambda).
 struct FreeMotion {
   Eigen::VectorXd y;
-  Eigen::MatrixXd X;        ///< three columns per point on this volume, in the order of `points`
-  std::vector<int> points;  ///< numbers of the points
-  double stiffness = 0.0;   ///< [N/m] largest diagonal entry of A
+  Eigen::MatrixXd X;       ///< three columns per solid row of this volume, in the order of `rows`
+  std::vector<int> rows;   ///< numbers of the solid rows
+  double stiffness = 0.0;  ///< [N/m] largest diagonal entry of A
   bool rotated = false;
   bool ok = false;
 };

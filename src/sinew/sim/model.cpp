@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/signals.hpp"
 
 namespace sinew {
 
@@ -13,119 +13,106 @@ using namespace building;  // the parts
 
 namespace {
 
-void build_actuator(Model& model, const std::string& name, const Actuator& actuator) {
-  const std::string path = "actuators." + name;
-  ActuatorModel& own = model.actuators.emplace_back();
-  own.name = name;
-  own.rod = find(model.scene.rods, actuator.rod, path + ".rod", "rod");
-  own.motion = actuator.motion;
-  own.driven = actuator.driven;
-  own.drive = actuator.drive;
-  RodModel& rod = model.rods[own.rod];
-  const bool turns = actuator.driven == Driven::torque || actuator.driven == Driven::angle;
-  if (turns != (actuator.motion == Motion::rotation)) {
-    reject(path + ".motion", turns ? "translation" : "rotation", "does not fit what drives it",
-           "force and displacement translate, torque and angle rotate");
-  }
-  if (const Table* table = std::get_if<Table>(&actuator.drive);
-      table && (table->times.empty() || table->times.size() != table->values.size())) {
-    reject(path, std::to_string(table->times.size()) + " times",
-           "a table needs as many times as values, and at least one", "give a constant or a table");
-  }
-  if (rod.geometric && actuator.motion == Motion::rotation) {
-    reject(path + ".motion", "rotation", "a geometric cable cannot be turned", "use `cable: cosserat`");
-  }
-  const auto axis = actuator.motion == Motion::translation ? rod::BaseAxis::translation : rod::BaseAxis::rotation;
-  if (std::find(rod.rod.base.begin(), rod.rod.base.end(), axis) != rod.rod.base.end()) {
-    reject(path, name, "the rod already has an actuator of this motion", "drive each motion of a base once");
-  }
-  rod.rod.base.push_back(axis);
-}
-
 /// A geometric cable runs through its points in the order of their abscissae, whatever couplings they belong to. Its
 /// length is that of the polyline, which cuts the corners of a curved path.
 void number_cable_points(Model& model, int number) {
-  RodModel& rod = model.rods[number];
+  CableModel& cable = model.cables[number];
   std::vector<PointModel*> points;
   for (PointModel& point : model.points) {
-    if (point.rod == number) points.push_back(&point);
+    if (point.line.cable == number) points.push_back(&point);
   }
   if (points.empty()) {
-    reject("rods." + rod.name + ".cable", "geometric", "a geometric cable needs a coupling that it runs through",
-           "add `slide: {rod: " + rod.name + ", ...}` or use `cable: cosserat`");
+    reject("rods." + cable.name + ".cable", "geometric", "a geometric cable needs a coupling that it runs through",
+           "add `slide: {rod: " + cable.name + ", ...}` or use `cable: cosserat`");
   }
-  if (rod.rod.base.empty()) {
-    reject("rods." + rod.name + ".cable", "geometric", "a geometric cable needs an actuator that holds its base",
+  const bool held = std::any_of(model.actuators.begin(), model.actuators.end(),
+                                [number](const ActuatorModel& actuator) { return actuator.line.cable == number; });
+  if (!held) {
+    reject("rods." + cable.name + ".cable", "geometric", "a geometric cable needs an actuator that holds its base",
            "add one with `displacement: 0 mm`, or use `cable: cosserat`");
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const PointModel* a, const PointModel* b) { return a->abscissa < b->abscissa; });
-  rod.cable.points = static_cast<int>(points.size());
-  rod.cable.rounding = 1e-5 * rod.cable.length;
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(rod.cable.coordinates());
+  cable.cable.points = static_cast<int>(points.size());
+  cable.cable.rounding = 1e-5 * cable.cable.length;
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(cable.cable.coordinates());
   for (std::size_t k = 0; k < points.size(); ++k) {
     points[k]->cable_point = static_cast<int>(k);
     const solid::Body& body = model.solids[points[k]->solid].body;
     z.segment<3>(static_cast<Eigen::Index>(1 + 3 * k)) = solid::position(points[k]->where, body.tetrahedra, body.rest);
   }
-  rod.cable.length = rod::cable_length(rod.cable, rod.base, z).value;
+  cable.cable.length = rod::cable_length(cable.cable, cable.base, z).value;
 }
 
-/// Numbers of all reduced unknowns and rows.
-void number_unknowns(Model& model) {
-  for (std::size_t i = 0; i < model.rods.size(); ++i) {
-    RodModel& rod = model.rods[i];
-    rod.offset = model.reduced;
-    if (rod.geometric) {
-      number_cable_points(model, static_cast<int>(i));
-      rod.length_row = model.rows++;
+/// Three rows of the solids, in the order in which they were asked for: points first, then what ties follow.
+void number_ties(Model& model) {
+  model.first_followed = model.unknowns;
+  std::vector<SolidRow> rows;
+  std::size_t next = 0;  // of the solid rows that ties asked for
+  for (TieModel& tie : model.ties) {
+    tie.row = model.rows;
+    model.rows += static_cast<int>(tie.along.size() + tie.about.size());
+    if (!tie.body()) continue;
+    const int groups = tie.directors ? 4 : 1;  // the point, and its axes
+    tie.unknown = model.unknowns;
+    model.unknowns += 3 * groups;
+    tie.body_row = model.rows;
+    for (int k = 0; k < groups; ++k, model.rows += 3) {
+      if (tie.solid < 0) continue;
+      SolidRow row = model.solid_rows[next++];
+      row.row = model.rows;
+      row.unknown = tie.unknown + 3 * k;
+      rows.push_back(row);
     }
-    model.reduced += rod.coordinates();
+  }
+  model.followed = model.unknowns - model.first_followed;
+  model.solid_rows = std::move(rows);
+  for (std::size_t k = 0; k < model.points.size(); ++k) {
+    SolidRow row;
+    row.solid = model.points[k].solid;
+    row.where = model.points[k].where;
+    row.row = model.points[k].row;
+    row.point = static_cast<int>(k);
+    model.solid_rows.push_back(row);
+  }
+}
+
+/// Numbers of all unknowns of the border and of all rows.
+void number_unknowns(Model& model) {
+  for (RodModel& rod : model.rods) {
+    rod.unknown = model.unknowns;
+    const int nb = rod.rod.base_coordinates();
+    model.unknowns += nb;
+    rod.floats = std::count_if(rod.rod.base.begin(), rod.rod.base.end(), [](const auto& b) { return b.turns; }) == 3;
+  }
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    number_cable_points(model, static_cast<int>(i));
+    CableModel& cable = model.cables[i];
+    cable.unknown = model.unknowns;
+    model.unknowns += cable.cable.coordinates();
+    cable.length_row = model.rows++;
   }
   for (PointModel& point : model.points) {
     point.row = model.rows;
     model.rows += 3;
-    if (!point.anchor && point.cable_point < 0) point.unknown = model.reduced++;
+    if (!point.fixed && point.cable_point < 0) point.unknown = model.unknowns++;
   }
   for (ActuatorModel& actuator : model.actuators) {
-    const RodModel& rod = model.rods[actuator.rod];
-    const auto axis = actuator.motion == Motion::translation ? rod::BaseAxis::translation : rod::BaseAxis::rotation;
-    const auto at = std::find(rod.rod.base.begin(), rod.rod.base.end(), axis) - rod.rod.base.begin();
-    actuator.unknown = rod.offset + static_cast<int>(at);
+    const bool turns = actuator.motion == Motion::rotation;
+    if (actuator.line.cable >= 0) {
+      actuator.unknown = model.cables[actuator.line.cable].unknown;
+    } else if (!actuator.tendon) {
+      RodModel& rod = model.rods[actuator.line.rod];
+      const auto& base = rod.rod.base;
+      const auto at = std::find_if(base.begin(), base.end(), [&](const rod::BaseMotion& b) {
+        return b.turns == turns && b.axis == actuator.unknown;
+      });
+      actuator.unknown = rod.unknown + static_cast<int>(at - base.begin());
+      if (turns) rod.floats = false;  // what drives it counts from the start
+    }
     if (actuator.driven == Driven::displacement || actuator.driven == Driven::angle) actuator.row = model.rows++;
   }
-}
-
-void build_output(Model& model, const std::string& name, const Output& output) {
-  const std::string path = "outputs." + name;
-  OutputModel own;
-  own.name = name;
-  if (output.solid.has_value() == output.rod.has_value()) {
-    reject(path, "", "needs exactly one of solid and rod",
-           "write `{solid: NAME, point: [x, y, z]}` or `{rod: NAME, at: s}`");
-  }
-  if (output.solid) {
-    own.solid = find(model.scene.solids, *output.solid, path + ".solid", "solid");
-    const SolidModel& solid = model.solids[own.solid];
-    const Pose& pose = model.scene.solids[own.solid].second.pose;
-    const Vec3 x =
-        output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);
-    own.where = embed_within(solid, x, output.reach, path + ".point", "the point");
-    if (own.where.distance > 0.0) {
-      model.warnings.push_back(path + ": the point lies " + text(own.where.distance) +
-                               " m outside the mesh and is extrapolated");
-    }
-  } else {
-    own.rod = find(model.scene.rods, *output.rod, path + ".rod", "rod");
-    own.abscissa = output.at.value_or(model.rods[own.rod].length());
-    if (own.abscissa < 0.0 || own.abscissa > model.rods[own.rod].length() * (1.0 + 1e-9)) {
-      reject(path + ".at", text(own.abscissa) + " m",
-             "must lie on the rod, from 0 to " + text(model.rods[own.rod].length()) + " m", "measure from the base");
-    }
-    if (model.rods[own.rod].geometric)
-      reject(path + ".rod", *output.rod, "a geometric cable has no material points", "put the output on the solid");
-  }
-  model.outputs.push_back(own);
+  number_ties(model);
 }
 
 void measure(Model& model) {
@@ -135,14 +122,13 @@ void measure(Model& model) {
     upper = upper.cwiseMax(solid.body.rest.rowwise().maxCoeff());
   }
   for (const RodModel& rod : model.rods) {
-    if (rod.geometric) continue;
-    const auto shape = rod::configure(rod.rod, rod.base, rod::rest_coordinates(rod.rod));
-    for (const Vec3& p : shape.p) {
+    for (const Vec3& p : start_shape(rod).p) {
       lower = lower.cwiseMin(p);
       upper = upper.cwiseMax(p);
     }
+    model.size = std::max(model.size, rod.rod.length());  // a ring is small for its length
   }
-  model.size = (upper - lower).norm();
+  model.size = std::max(model.size, (upper - lower).norm());
 }
 
 }  // namespace
@@ -169,13 +155,26 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
            "add a `solids:` or `rods:` section; `sinew schema` lists all keys");
   }
   for (const auto& [name, solid] : scene.solids) model.solids.push_back(build_solid(scene, name, solid, read_mesh));
-  for (const auto& [name, rod] : scene.rods) model.rods.push_back(build_rod(scene, name, rod));
+  for (const auto& [name, rod] : scene.rods) {
+    if (rod.cable == Cable::geometric) {
+      model.cables.push_back(build_cable(scene, name, rod));
+    } else {
+      model.rods.push_back(build_rod(scene, name, rod));
+    }
+  }
   for (const auto& [name, actuator] : scene.actuators) build_actuator(model, name, actuator);
-  for (std::size_t i = 0; i < scene.couplings.size(); ++i)
-    build_coupling(model, static_cast<int>(i), scene.couplings[i]);
+  for (const auto& [name, load] : scene.loads) build_load(model, name, load);
+  for (std::size_t i = 0; i < scene.couplings.size(); ++i) {
+    const auto number = static_cast<int>(i);
+    if (const Slide* slide = std::get_if<Slide>(&scene.couplings[i])) build_slide(model, number, *slide);
+    if (const Tie* tie = std::get_if<Tie>(&scene.couplings[i])) build_tie(model, number, *tie);
+  }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
   measure(model);
+  const State start = initial_state(model);
+  for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
+  model.start_energy = energy_balance(model, start).total();
   return model;
 }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sinew/linalg/sparse_cholesky.hpp"
 #include "sinew/rod/geometric_cable.hpp"
 #include "sinew/rod/rod.hpp"
+#include "sinew/rod/tendon.hpp"
 #include "sinew/sim/placement.hpp"
 #include "sinew/sim/scene.hpp"
 #include "sinew/solid/body.hpp"
@@ -27,40 +29,100 @@ struct SolidModel {
       block;  ///< per element and corner pair 4 a + b: positions of the 3 x 3 block, -1: absent
 };
 
-/// A rod (or, with `geometric`, the massless cable in its place): its coordinates are part of the reduced unknowns z.
+/// A Cosserat rod. Its strains are eliminated in every step; the coordinates of its base are unknowns z.
 struct RodModel {
   std::string name;
-  bool geometric = false;
   rod::Rod rod;
-  rod::GeometricCable cable;  ///< if geometric
-  Placement base;             ///< in the world at t = 0
+  Placement base;  ///< in the world at t = 0
   int frame = -1;
-  int offset = 0;             ///< first of its coordinates in z
-  int length_row = -1;        ///< row of a geometric cable's constant length
+  bool floats = false;    ///< the base turns freely in all three directions: turns are counted from the last step on
+  int unknown = 0;        ///< first of its base's coordinates in z
+  Eigen::VectorXd start;  ///< coordinates at t = 0
   double path_deviation = 0;  ///< [m] how far the rod's sections stay off the path they were laid along
-  int coordinates() const { return geometric ? cable.coordinates() : rod.coordinates(); }
-  double length() const { return geometric ? cable.length : rod.length(); }
 };
 
-/// A point of a solid on a rod: three rows, and its abscissa as an unknown unless it holds the tip.
+/// The massless cable without stiffness, the paper's baseline: all its coordinates are unknowns z.
+struct CableModel {
+  std::string name;
+  rod::GeometricCable cable;
+  std::vector<Vec3> path;  ///< [m] in the world at t = 0
+  Placement base;
+  int frame = -1;
+  int unknown = 0;      ///< first of its coordinates in z
+  int length_row = -1;  ///< row of its constant length
+};
+
+/// A rod or a cable by its number among its kind.
+struct Line {
+  int rod = -1, cable = -1;
+  bool operator==(const Line&) const = default;
+};
+
+/// A point of a solid on a rod or cable: three rows, and its abscissa as an unknown unless it is fixed there.
 struct PointModel {
-  int rod = 0, solid = 0, coupling = 0;
+  Line line;
+  int solid = 0, coupling = 0;
   solid::EmbeddedPoint where;
-  double abscissa = 0.0;  ///< [m] at t = 0
-  bool anchor = false;    ///< holds the rod's tip: abscissa fixed
-  int unknown = -1;       ///< of its abscissa in z; -1 for an anchor or a geometric cable
-  int cable_point = -1;   ///< number on a geometric cable
+  double abscissa = 0.0;  ///< [m] at t = 0; beyond the tip: it waits for it
+  bool fixed = false;     ///< to the rod's material: an anchor
+  int unknown = -1;       ///< of its abscissa in z; -1 if fixed or on a cable
+  int cable_point = -1;   ///< number on a cable
   int row = 0;            ///< first of its three rows
+};
+
+/// Three rows that a solid takes part in: a material point or, with weights that sum to zero, a vector carried with it.
+struct SolidRow {
+  int solid = 0;
+  solid::EmbeddedPoint where;
+  int row = 0;
+  int point = -1;    ///< the sliding point or anchor they belong to; they are off while it is
+  int unknown = -1;  ///< or the three unknowns z that they hold to it, for a tie
+};
+
+/// A material point of a rod held by the ground, a frame, a solid or another rod (constraint/tie.hpp).
+struct TieModel {
+  int rod = 0, coupling = 0;
+  double s = 0.0;                                ///< [m]
+  Placement holder;                              ///< axes of the holder and the point held, at t = 0 in the world
+  int frame = -1;                                ///< of a holder that is no body
+  int solid = -1, other = -1;                    ///< or a body
+  double other_s = 0.0;                          ///< [m] abscissa on the other rod
+  Vec3 other_offset = Vec3::Zero();              ///< [m] of the point held, in the other rod's cross-section
+  rod::Mat3 other_axes = rod::Mat3::Identity();  ///< the holder's axes there
+  rod::Mat3 own_axes = rod::Mat3::Identity();    ///< the holder's axes in this rod's cross-section, at t = 0
+  std::vector<int> along, about;
+  double length = 0.0;  ///< [m] of the directors, so that all rows are lengths
+  int row = 0;          ///< first of its rows: along, then about
+  int unknown = -1;     ///< of a body: place of the point held (3) and, with `directors`, of its axes (9)
+  bool directors = false;
+  int body_row = -1;  ///< of another rod: first of the rows that hold these unknowns to it
+  bool body() const { return solid >= 0 || other >= 0; }
 };
 
 struct ActuatorModel {
   std::string name;
-  int rod = 0;
+  Line line;
   Motion motion = Motion::translation;
   Driven driven = Driven::displacement;
   Drive drive;
-  int unknown = 0;  ///< of its base coordinate in z
-  int row = -1;     ///< if driven by displacement or angle
+  std::optional<rod::Tendon> tendon;  ///< pulled instead of the base
+  double tendon_length = 0.0;         ///< [m] at t = 0
+  int unknown = -1;                   ///< of its base coordinate in z
+  int row = -1;                       ///< if driven by displacement or angle
+};
+
+/// Forces on material points of a rod, all times one factor.
+struct LoadModel {
+  struct At {
+    double s = 0.0;       ///< [m]
+    double weight = 1.0;  ///< [m] of a distributed load
+  };
+  std::string name;
+  int rod = 0;
+  std::vector<At> at;
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< [N], [N m], or per metre
+  bool follower = false;
+  Drive factor;
 };
 
 struct OutputModel {
@@ -68,10 +130,13 @@ struct OutputModel {
   int solid = -1, rod = -1;
   solid::EmbeddedPoint where;  ///< on the solid
   double abscissa = 0.0;       ///< on the rod
+  Quantity quantity = Quantity::position;
 };
 
 /// What `check` tells a person about one coupling.
 struct CouplingFacts {
+  int rod = -1;  ///< or a cable:
+  int cable = -1;
   int asked = 0, kept = 0, outside = 0;
   double farthest = 0.0;           ///< [m] largest distance of a point from the mesh
   std::vector<double> no_unknown;  ///< abscissae of points that touch no free unknown
@@ -82,15 +147,22 @@ struct Model {
   Scene scene;
   std::vector<SolidModel> solids;
   std::vector<RodModel> rods;
+  std::vector<CableModel> cables;
   std::vector<PointModel> points;
   std::vector<PointModel> dropped;  ///< asked for, but determined by others: no rows, only watched
+  std::vector<TieModel> ties;
+  std::vector<SolidRow> solid_rows;
   std::vector<ActuatorModel> actuators;
+  std::vector<LoadModel> loads;
   std::vector<OutputModel> outputs;
   std::vector<CouplingFacts> couplings;
   std::vector<std::string> warnings;
-  int reduced = 0;    ///< size of z: coordinates of all rods, then abscissae
-  int rows = 0;       ///< multipliers
-  double size = 0.0;  ///< [m] diagonal of everything at rest: the yardstick of lengths
+  int unknowns = 0;                      ///< size of z: coordinates of bases and cables, abscissae, what ties follow
+  int first_followed = 0, followed = 0;  ///< of the latter among them
+  int rows = 0;                          ///< multipliers
+  double start_energy = 0.0;             ///< [J] stored at t = 0, in rods that do not lie at rest
+  std::vector<Eigen::Matrix3Xd> start_masses;  ///< [m] mass points of each rod at t = 0
+  double size = 0.0;                           ///< [m] diagonal of everything at rest: the yardstick of lengths
 };
 
 using MeshReader = std::function<solid::Mesh(const std::filesystem::path&)>;

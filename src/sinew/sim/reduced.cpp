@@ -3,216 +3,182 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "sinew/constraint/sliding.hpp"
-#include "sinew/rod/kinematics.hpp"
-#include "sinew/solid/embedding.hpp"
+#include "sinew/sim/places.hpp"
+#include "sinew/sim/rod_rows.hpp"
 
 namespace sinew {
 
 namespace {
 
-Vec3 position_on_solid(const StepContext& context, const State& iterate, const PointModel& point) {
-  return solid::position(point.where, context.model.solids[point.solid].body.tetrahedra, iterate.solids[point.solid].x);
-}
-
-/// What a generalised force is divided by to compare it with forces: the lever arm of its coordinate.
-Eigen::VectorXd lever_arms(const rod::Rod& rod) {
-  Eigen::VectorXd lever(rod.coordinates());
-  for (int i = 0; i < rod.base_coordinates(); ++i)
-    lever[i] = rod.base[i] == rod::BaseAxis::translation ? 1.0 : rod.length();
-  for (int i = 0; i < rod.sections(); ++i) {
-    for (int c = 0; c < rod.strains(); ++c) {
-      lever[rod.first_coordinate(i) + c] = rod.section_length(i) * (rod.basis[c] < 3 ? rod.length() : 1.0);
-    }
-  }
-  return lever;
-}
-
-/// (9) of one Cosserat rod, and its rows of sliding points and anchors.
-void add_rod(const StepContext& context, const State& iterate, int number, Reduced& reduced) {
-  const RodModel& model = context.model.rods[number];
-  const rod::Rod& rod = model.rod;
-  const RodState& now = iterate.rods[number];
-  const RodState& start = context.start.rods[number];
-  const rod::Configuration shape = rod::configure(rod, context.bases[number], now.q);
-  solve::CoupledProblem& problem = reduced.problem;
-  const int n = rod.coordinates();
-  auto r = problem.r.segment(model.offset, n);
-  auto B = problem.B.block(model.offset, model.offset, n, n);
-
-  // Hooke: F(q) = K (q - q_rest).
-  for (int i = 0; i < rod.sections(); ++i) {
-    for (int c = 0; c < rod.strains(); ++c) {
-      const int j = rod.first_coordinate(i) + c;
-      const double k = rod.section_length(i) * rod.stiffness[i][rod.basis[c]];
-      r[j] = k * (now.q[j] - rod.rest[j - rod.base_coordinates()]);
-      B(j, j) = k;
-    }
-  }
-
-  if (n > 0) reduced.scale = std::max(reduced.scale, (r.array() / lever_arms(rod).array()).abs().maxCoeff());
-
-  // Inertia of the mass points by backward Euler on their positions, and their weight.
-  std::vector<rod::PointLoad> loads;
-  const double h = context.h;
-  double acting = 0.0;  // inertia and weight each by themselves: in free fall they cancel
-  for (std::size_t i = 0; i < rod.masses.size(); ++i) {
-    const rod::MassPoint& mass = rod.masses[i];
-    const auto column = static_cast<Eigen::Index>(i);
-    const Vec3 X = rod::position(shape, mass.s, mass.offset);
-    const Vec3 acceleration = ((X - start.masses.col(column)) / h - start.velocity.col(column)) / h;
-    loads.push_back(
-        {mass.s, mass.offset, mass.mass * (acceleration - context.model.scene.gravity), mass.mass / (h * h)});
-    acting += mass.mass * (acceleration.norm() + context.model.scene.gravity.norm());
-  }
-  reduced.scale = std::max(reduced.scale, acting);
-
-  // Sliding points and anchors: c = P - gamma, G = (gamma_q, gamma_s), and the curvature of lambda . gamma.
-  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
-    const PointModel& point = context.model.points[k];
-    if (point.rod != number) continue;
-    const PointState& state = iterate.points[k];
-    if (!state.on) {  // beyond the tip: lambda = 0, and the abscissa stays
+/// Sliding points and anchors of a rod: c = P - gamma, and lambda . gamma_s = 0 where the abscissa is free.
+void add_points(RodRows& rod) {
+  solve::CoupledProblem& problem = rod.problem();
+  const State& iterate = rod.iterate();
+  for (std::size_t k = 0; k < iterate.points.size(); ++k) {
+    const PointModel& point = rod.context().model.points[k];
+    if (point.line.rod != rod.number()) continue;
+    if (!iterate.points[k].on) {  // beyond the tip: lambda = 0, and the abscissa stays
       if (point.unknown >= 0) problem.B(point.unknown, point.unknown) = 1.0;
       problem.W.block<3, 3>(point.row, point.row) = Eigen::Matrix3d::Identity();
       continue;
     }
-    const rod::CurvePoint on_curve = rod::curve_point(shape, state.s);
-    const Vec3 P = position_on_solid(context, iterate, point);
-    const Vec3 gap = P - on_curve.position;
+    const double s = iterate.points[k].s;
+    const Vec3 lambda = iterate.lambda.segment<3>(point.row);
+    const rod::CurvePoint on_curve = rod::curve_point(rod.shape(), s);
+    const Vec3 gap = solid_point(rod.context().model, iterate, point.solid, point.where) - on_curve.position;
     problem.c.segment<3>(point.row) = gap;
-    problem.G.block(point.row, model.offset, 3, n) = rod::position_jacobian(shape, state.s);
-    loads.push_back({state.s, Vec3::Zero(), state.lambda, 0.0});
-    reduced.scale = std::max(reduced.scale, state.lambda.norm());
+    for (int i = 0; i < 3; ++i) rod.attach(rod.row(point.row + i), on_curve, Vec3::Zero(), Vec3::Unit(i));
+    Reduced& reduced = rod.reduced();
+    reduced.scale = std::max(reduced.scale, lambda.norm());
     if (point.unknown < 0) {
+      rod.load({s, Vec3::Zero(), lambda});
       reduced.violation = std::max(reduced.violation, gap.norm());
       continue;
     }
-    reduced.violation = std::max(reduced.violation, constraint::violation(shape, state.s, P));
-    const int s = point.unknown;
-    problem.G.block<3, 1>(point.row, s) = on_curve.derivative;
-    const Eigen::VectorXd coupling = rod::tangent_gradient(shape, state.s, state.lambda);
-    problem.B.block(model.offset, s, n, 1) = coupling;
-    problem.B.block(s, model.offset, 1, n) = coupling.transpose();
-    problem.B(s, s) = state.lambda.dot(on_curve.second);
-    problem.r[s] = state.lambda.dot(on_curve.derivative);
-    reduced.largest = std::max(reduced.largest, std::abs(problem.r[s]));
+    rod.slide(s, lambda, point.unknown);
+    const Vec3 t = on_curve.derivative.normalized();
+    reduced.violation = std::max(reduced.violation, (gap - t.dot(gap) * t).norm());
+    problem.G.block<3, 1>(point.row, point.unknown) = on_curve.derivative;
+    problem.r[point.unknown] = lambda.dot(on_curve.derivative);
+    reduced.largest = std::max(reduced.largest, std::abs(problem.r[point.unknown]));
   }
-  std::stable_sort(loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
-  rod::add_loads(shape, loads, r, B);
 }
 
 /// The massless cable: constant length with the tension as its multiplier, points held by rows with G = I.
 void add_cable(const StepContext& context, const State& iterate, int number, Reduced& reduced) {
-  const RodModel& model = context.model.rods[number];
-  const RodState& now = iterate.rods[number];
+  const CableModel& model = context.model.cables[number];
+  const Eigen::VectorXd& z = iterate.cables[number].z;
   solve::CoupledProblem& problem = reduced.problem;
-  const rod::CableLength length = rod::cable_length(model.cable, context.bases[number], now.q);
-  const double tension = iterate.tensions[number];
+  const rod::CableLength length = rod::cable_length(model.cable, context.cable_bases[number], z);
+  const double tension = iterate.lambda[model.length_row];
   const int n = model.cable.coordinates();
-  problem.B.block(model.offset, model.offset, n, n) = tension * length.hessian;
-  problem.r.segment(model.offset, n) = tension * length.gradient;
-  problem.G.block(model.length_row, model.offset, 1, n) = length.gradient.transpose();
+  problem.B.block(model.unknown, model.unknown, n, n) = tension * length.hessian;
+  problem.r.segment(model.unknown, n) = tension * length.gradient;
+  problem.G.block(model.length_row, model.unknown, 1, n) = length.gradient.transpose();
   problem.c[model.length_row] = model.cable.length - length.value;
   reduced.scale = std::max(reduced.scale, std::abs(tension));
   reduced.violation = std::max(reduced.violation, std::abs(model.cable.length - length.value));
-  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
-    const PointModel& point = context.model.points[k];
-    if (point.rod != number) continue;
-    const int z = 1 + 3 * point.cable_point;
-    const Vec3 gap = position_on_solid(context, iterate, point) - now.q.segment<3>(z);
+  for (const PointModel& point : context.model.points) {
+    if (point.line.cable != number) continue;
+    const int at = 1 + 3 * point.cable_point;
+    const Vec3 gap = solid_point(context.model, iterate, point.solid, point.where) - z.segment<3>(at);
     problem.c.segment<3>(point.row) = gap;
-    problem.G.block<3, 3>(point.row, model.offset + z) = Eigen::Matrix3d::Identity();
-    problem.r.segment<3>(model.offset + z) += iterate.points[k].lambda;
+    problem.G.block<3, 3>(point.row, model.unknown + at) = Eigen::Matrix3d::Identity();
+    problem.r.segment<3>(model.unknown + at) += iterate.lambda.segment<3>(point.row);
     reduced.violation = std::max(reduced.violation, gap.norm());
   }
 }
 
-/// Motors: a known force, or a row delta_a = base coordinate - target with the force as its multiplier.
-void add_actuator(const StepContext& context, const State& iterate, std::size_t number, Reduced& reduced) {
+/// Motors of bases: a known force, or a row delta_a = base coordinate - target with the force as its multiplier.
+void add_actuator(const StepContext& context, const State& iterate, double position, std::size_t number,
+                  Reduced& reduced) {
   const ActuatorModel& actuator = context.model.actuators[number];
-  const RodModel& rod = context.model.rods[actuator.rod];
+  if (actuator.tendon) return;  // with its rod
+  const double arm = actuator.motion == Motion::rotation ? context.model.rods[actuator.line.rod].rod.length() : 1.0;
   solve::CoupledProblem& problem = reduced.problem;
-  const double force = actuator.row < 0 ? context.command[number] : iterate.actuators[number];
+  const double target = context.command.actuators[number];
+  const double force = actuator.row < 0 ? target : iterate.lambda[actuator.row];
   problem.r[actuator.unknown] -= force;
-  reduced.scale = std::max(reduced.scale, std::abs(force) / (actuator.motion == Motion::rotation ? rod.length() : 1.0));
+  reduced.scale = std::max(reduced.scale, std::abs(force) / arm);
   if (actuator.row < 0) return;
-  const double off = iterate.rods[actuator.rod].q[actuator.unknown - rod.offset] - context.command[number];
+  const double off = position - target;
   problem.G(actuator.row, actuator.unknown) = -1.0;
   problem.c[actuator.row] = off;
-  reduced.violation =
-      std::max(reduced.violation, std::abs(off) * (actuator.motion == Motion::rotation ? rod.length() : 1.0));
+  reduced.violation = std::max(reduced.violation, std::abs(off) * arm);
+}
+
+/// Unknowns that a tie follows on a solid: c = sum w x - z.
+void add_followed(const StepContext& context, const State& iterate, Reduced& reduced) {
+  solve::CoupledProblem& problem = reduced.problem;
+  for (const SolidRow& row : context.model.solid_rows) {
+    if (row.unknown < 0) continue;
+    const Vec3 gap = solid_point(context.model, iterate, row.solid, row.where) -
+                     iterate.followed.segment<3>(row.unknown - context.model.first_followed);
+    problem.c.segment<3>(row.row) = gap;
+    problem.G.block<3, 3>(row.row, row.unknown) = Eigen::Matrix3d::Identity();
+    problem.r.segment<3>(row.unknown) += iterate.lambda.segment<3>(row.row);
+    reduced.violation = std::max(reduced.violation, gap.norm());
+  }
 }
 
 }  // namespace
 
 Reduced linearize(const StepContext& context, const State& iterate) {
   Reduced reduced;
-  const int nz = context.model.reduced, rows = context.model.rows;
-  reduced.problem.B.setZero(nz, nz);
-  reduced.problem.G.setZero(rows, nz);
-  reduced.problem.W.setZero(rows, rows);
-  reduced.problem.r.setZero(nz);
-  reduced.problem.c.setZero(rows);
-  for (std::size_t i = 0; i < context.model.rods.size(); ++i) {
-    const auto add = context.model.rods[i].geometric ? add_cable : add_rod;
-    add(context, iterate, static_cast<int>(i), reduced);
+  const Model& model = context.model;
+  reduced.problem.B.setZero(model.unknowns, model.unknowns);
+  reduced.problem.G.setZero(model.rows, model.unknowns);
+  reduced.problem.W.setZero(model.rows, model.rows);
+  reduced.problem.r.setZero(model.unknowns);
+  reduced.problem.c.setZero(model.rows);
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    RodRows rod(context, iterate, static_cast<int>(i), reduced);
+    add_points(rod);
+    add_ties(rod);
+    rod.finish();
   }
-  for (std::size_t i = 0; i < context.model.actuators.size(); ++i) add_actuator(context, iterate, i, reduced);
-  for (const RodModel& model : context.model.rods) {
-    Eigen::VectorXd r = reduced.problem.r.segment(model.offset, model.coordinates());
-    if (!model.geometric) r.array() /= lever_arms(model.rod).array();
-    if (r.size() > 0) reduced.largest = std::max(reduced.largest, r.lpNorm<Eigen::Infinity>());
+  for (std::size_t i = 0; i < model.cables.size(); ++i) add_cable(context, iterate, static_cast<int>(i), reduced);
+  const std::vector<double> positions = motor_positions(model, iterate);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) add_actuator(context, iterate, positions[i], i, reduced);
+  add_followed(context, iterate, reduced);
+  // Unknowns of the border are lengths, but for the turns of bases.
+  Eigen::VectorXd r = reduced.problem.r;
+  for (const RodModel& rod : model.rods) {
+    for (int i = 0; i < rod.rod.base_coordinates(); ++i) {
+      if (rod.rod.base[i].turns) r[rod.unknown + i] /= rod.rod.length();
+    }
   }
+  if (r.size() > 0) reduced.largest = std::max(reduced.largest, r.lpNorm<Eigen::Infinity>());
   return reduced;
 }
 
 void add_compliance(const StepContext& context, const std::vector<FreeMotion>& free, solve::CoupledProblem& problem) {
+  const std::vector<SolidRow>& rows = context.model.solid_rows;
   for (const FreeMotion& motion : free) {
     const Eigen::MatrixXd W = motion.X.transpose() * motion.X;
     const Eigen::VectorXd Hdx = motion.X.transpose() * motion.y;
-    for (std::size_t a = 0; a < motion.points.size(); ++a) {
-      const int row = context.model.points[motion.points[a]].row;
+    for (std::size_t a = 0; a < motion.rows.size(); ++a) {
+      const int row = rows[motion.rows[a]].row;
       const auto ia = static_cast<Eigen::Index>(3 * a);
       problem.c.segment<3>(row) += Hdx.segment<3>(ia);
-      for (std::size_t b = 0; b < motion.points.size(); ++b) {
-        const int column = context.model.points[motion.points[b]].row;
-        problem.W.block<3, 3>(row, column) += W.block<3, 3>(ia, static_cast<Eigen::Index>(3 * b));
-      }
+      for (std::size_t b = 0; b < motion.rows.size(); ++b)
+        problem.W.block<3, 3>(row, rows[motion.rows[b]].row) += W.block<3, 3>(ia, static_cast<Eigen::Index>(3 * b));
     }
   }
 }
 
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate) {
-  for (std::size_t i = 0; i < context.model.rods.size(); ++i) {
-    const RodModel& rod = context.model.rods[i];
-    iterate.rods[i].q += fraction * solution.dz.segment(rod.offset, rod.coordinates());
-    if (rod.geometric) iterate.tensions[i] += fraction * solution.dlambda[rod.length_row];
+  const Model& model = context.model;
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    const RodModel& rod = model.rods[i];
+    Eigen::VectorXd& q = iterate.rods[i].q;
+    const int nb = rod.rod.base_coordinates();
+    q.head(nb) += fraction * solution.dz.segment(rod.unknown, nb);
+    q.tail(rod.rod.strain_coordinates()) += fraction * solution.dq[i];
   }
-  for (std::size_t k = 0; k < context.model.points.size(); ++k) {
-    const PointModel& point = context.model.points[k];
-    if (point.unknown >= 0) iterate.points[k].s += fraction * solution.dz[point.unknown];
-    iterate.points[k].lambda += fraction * solution.dlambda.segment<3>(point.row);
+  for (std::size_t i = 0; i < model.cables.size(); ++i)
+    iterate.cables[i].z += fraction * solution.dz.segment(model.cables[i].unknown, model.cables[i].cable.coordinates());
+  for (std::size_t k = 0; k < model.points.size(); ++k) {
+    if (model.points[k].unknown >= 0) iterate.points[k].s += fraction * solution.dz[model.points[k].unknown];
   }
-  for (std::size_t i = 0; i < context.model.actuators.size(); ++i) {
-    const int row = context.model.actuators[i].row;
-    if (row >= 0) iterate.actuators[i] += fraction * solution.dlambda[row];
-  }
+  iterate.followed += fraction * solution.dz.segment(model.first_followed, model.followed);
+  iterate.lambda += fraction * solution.dlambda;
 }
 
-double largest_turn(const StepContext& context, const Eigen::VectorXd& dz) {
+double largest_turn(const StepContext& context, const solve::CoupledSolution& solution) {
   double turn = 0.0;
-  for (const RodModel& model : context.model.rods) {
-    if (model.geometric) continue;
-    for (int i = 0; i < model.rod.base_coordinates(); ++i) {
-      if (model.rod.base[i] == rod::BaseAxis::rotation) turn = std::max(turn, std::abs(dz[model.offset + i]));
+  for (std::size_t n = 0; n < context.model.rods.size(); ++n) {
+    const RodModel& model = context.model.rods[n];
+    const rod::Rod& rod = model.rod;
+    for (int i = 0; i < rod.base_coordinates(); ++i) {
+      if (rod.base[i].turns) turn = std::max(turn, std::abs(solution.dz[model.unknown + i]));
     }
-    for (int i = 0; i < model.rod.sections(); ++i) {
-      for (int c = 0; c < model.rod.strains(); ++c) {
-        if (model.rod.basis[c] >= 3) continue;
-        turn = std::max(turn,
-                        std::abs(dz[model.offset + model.rod.first_coordinate(i) + c]) * model.rod.section_length(i));
+    for (int i = 0; i < rod.count(); ++i) {
+      for (std::size_t c = 0; c < rod.sections[i].modes.size(); ++c) {
+        if (rod.sections[i].modes[c].strain >= 3) continue;
+        const double dq = solution.dq[n][rod.first[i] + static_cast<int>(c)];
+        turn = std::max(turn, std::abs(dq) * rod.sections[i].length());
       }
     }
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sinew/sim/places.hpp"
+
 namespace sinew {
 
 namespace {
@@ -10,13 +12,13 @@ namespace {
 /// command (a constant from the start, say) is so spread over the parts of a halved step.
 Command command_part(const Model& model, const State& state, Command end, double part) {
   if (part >= 1.0) return end;
-  for (std::size_t i = 0; i < end.size(); ++i) {
-    const ActuatorModel& actuator = model.actuators[i];
-    const double now = actuator.row < 0
-                           ? state.actuators[i]
-                           : state.rods[actuator.rod].q[actuator.unknown - model.rods[actuator.rod].offset];
-    end[i] = now + part * (end[i] - now);
+  const std::vector<double> positions = motor_positions(model, state);
+  for (std::size_t i = 0; i < end.actuators.size(); ++i) {
+    const double now = model.actuators[i].row < 0 ? state.actuators[i] : positions[i];
+    end.actuators[i] = now + part * (end.actuators[i] - now);
   }
+  for (std::size_t i = 0; i < end.loads.size(); ++i)
+    end.loads[i] = state.loads[i] + part * (end.loads[i] - state.loads[i]);
   return end;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -87,18 +88,74 @@ struct Solid {
 /// The six strains, in this order everywhere (NOTATION.md).
 enum class Strain { torsion, bending_y, bending_z, elongation, shear_y, shear_z };
 
-struct Circle {
-  double radius = 0.0;  ///< [m] > 0
+/// A dimension that may change linearly from the start of a part of a rod to its end.
+struct Taper {
+  double start = 0.0, end = 0.0;
+  Taper() = default;
+  Taper(double value) : start(value), end(value) {}  // NOLINT(google-explicit-constructor): a plain number is a Taper
+  Taper(double from, double to) : start(from), end(to) {}
 };
 
+struct Circle {
+  Taper radius;  ///< [m] > 0
+};
+
+struct Tube {
+  Taper outer, inner;  ///< [m] radii, 0 < inner < outer
+};
+
+struct Ellipse {
+  Taper y, z;  ///< [m] half axes along y and z of the cross-section, > 0
+};
+
+struct Rectangle {
+  Taper y, z;  ///< [m] full sides along y and z of the cross-section, > 0
+};
+
+/// A section whose stiffness is known, from a measurement or another program.
+struct GivenSection {
+  Eigen::Matrix<double, 6, 6> stiffness = Eigen::Matrix<double, 6, 6>::Zero();  ///< [N m^2, N m, N], order of Strain
+  double line_density = 0.0;                                                    ///< [kg/m] >= 0
+  double radius = 0.0;                                                          ///< [m] > 0, drawn and of its inertia
+};
+
+using CrossSection = std::variant<Circle, Tube, Ellipse, Rectangle, GivenSection>;
+
+/// Kelvin-Voigt damping may be given either way; both add up.
 struct RodMaterial {
-  double young = 0.0;    ///< [Pa] > 0
-  double poisson = 0.0;  ///< in (-1, 0.5]
-  double density = 0.0;  ///< [kg/m^3] >= 0
+  double young = 0.0;      ///< [Pa] > 0
+  double poisson = 0.0;    ///< in (-1, 0.5]
+  double density = 0.0;    ///< [kg/m^3] >= 0
+  double viscosity = 0.0;  ///< [Pa s] >= 0, of shear; three times as much in extension
+  double damping = 0.0;    ///< [s] >= 0, damping over stiffness of every strain
+};
+
+/// A piece of a rod with its own cross-section and material; parts follow one another from base to tip.
+struct RodPart {
+  double to = 0.0;  ///< [m] abscissa of its end; the last one's is the rod's length
+  CrossSection section = Circle{};
+  RodMaterial material;  ///< not used by a given section, apart from damping
 };
 
 /// `cosserat`: the rod with its stiffness. `geometric`: a massless cable without stiffness through the sliding points.
 enum class Cable { cosserat, geometric };
+
+/// The stress-free shape of a rod: as laid along its path, straight, or given strains over the arc length (piecewise
+/// linear between the abscissae, constant outside; one row: constant).
+enum class Rest { path, straight };
+struct RestStrains {
+  std::vector<double> at;                            ///< [m] strictly increasing
+  std::vector<Eigen::Matrix<double, 6, 1>> strains;  ///< as many; order of Strain [1/m, -]
+};
+
+/// How a rod lies when the run starts.
+enum class Start {
+  path,  ///< bent to its path, whatever its stress-free shape
+  rest   ///< stress-free; of the path only the first point, its direction there and the length count
+};
+
+/// A direction of motion of a rod's base: along or about one axis of its rest frame.
+enum class BaseAxis { x, y, z, turn_x, turn_y, turn_z };
 
 struct Rod {
   std::vector<Vec3> path;   ///< [m], from base to tip, at least two points
@@ -110,40 +167,96 @@ struct Rod {
   std::variant<int, std::vector<double>> sections =
       1;  ///< a count (equal lengths), or ascending ends [m] from 0 to the length
   std::vector<Strain> strains = {Strain::torsion, Strain::bending_y, Strain::bending_z};
-  Circle section;
+  std::array<int, 6> order = {};  ///< Legendre order in a section of each strain, 0 (constant) to 5
+  std::variant<Rest, RestStrains> rest = Rest::path;
+  std::optional<Start> start;  ///< none: `rest` if strains are given, else `path`
+  std::vector<BaseAxis> base;  ///< free motions of the base besides those its actuators drive; empty: clamped
+  CrossSection section = Circle{};
   RodMaterial material;
+  std::vector<RodPart> parts;  ///< instead of section and material
 };
 
-enum class AnchorTip { none, position };
+/// What holds the last point of a slide.
+enum class AnchorTip { none, position, pose };
 
 /// Points of the solid that stay on the rod's centreline and slide along it; the last one may hold its tip.
 struct Slide {
   std::string rod;
   std::string solid;
   std::variant<int, std::vector<double>> points = 2;  ///< a count (equal arc length from base to tip), or abscissae [m]
+  std::vector<Vec3> channel;  ///< instead of `points`: where the points are in the solid at rest [m], in its own frame;
+                              ///< those beyond the rod's tip wait for it
   AnchorTip anchor_tip = AnchorTip::position;
   std::optional<double> reach;  ///< [m] how far outside the mesh a point may lie; 10 % of the body's diagonal
+};
+
+/// A material point of a rod held, along some axes and about some, by the ground, a frame, a solid or another rod:
+/// where it is at the start of the run, relative to what holds it. The axes are those of the holder: the world's
+/// (ground, solid, carried along with it), the frame's, or the other rod's cross-section.
+struct Tie {
+  std::string rod;
+  std::optional<double> at;          ///< [m] abscissa; none: the tip
+  std::optional<std::string> frame;  ///< at most one of frame, solid and other; none: the ground
+  std::optional<std::string> solid;
+  std::optional<std::string> other;                   ///< another rod
+  std::optional<double> other_at;                     ///< [m] abscissa on it; none: its tip
+  std::array<bool, 3> along = {true, true, true};     ///< directions held
+  std::array<bool, 3> about = {false, false, false};  ///< rotations held
+  std::optional<double> reach;                        ///< as for Slide, with `solid`
+};
+
+using Coupling = std::variant<Slide, Tie>;
+
+/// A massless tendon inside a rod, from the abscissa `from` to `to`, where it ends: at a distance from the centreline
+/// and at an angle from the cross-section's y axis towards z. Both may change linearly along it: parallel, convergent
+/// or helical. Friction-free.
+struct Tendon {
+  double from = 0.0;         ///< [m]
+  std::optional<double> to;  ///< [m] none: the tip
+  Taper distance;            ///< [m] >= 0
+  Taper angle;               ///< [rad]
 };
 
 enum class Motion { translation, rotation };
 enum class Driven { force, displacement, torque, angle };
 
-/// Moves the base of a rod along -x (translation, > 0 pulls rod out) or about +x (rotation) of its rest frame.
+/// Moves a rod: its base along an axis (translation) or about one (rotation) of its rest frame, or a tendon in it.
+/// Translation is along -x when no axis is given: a positive displacement pulls the rod out, a positive force pulls.
 struct Actuator {
   std::string rod;
   Motion motion = Motion::translation;
+  std::optional<int> axis;       ///< 0, 1, 2: along or about +x, +y, +z; none: along -x, about +x
+  std::optional<Tendon> tendon;  ///< pulled instead of the base: force is its tension, displacement how far it is drawn
   Driven driven = Driven::displacement;
   Drive drive;  ///< [N], [m], [N m] or [rad]
 };
 
-/// A material point whose position is recorded: of a solid (`point`) or a rod (`at`).
+/// A dead or follower load on a rod.
+struct Load {
+  std::string rod;
+  std::optional<double> at;            ///< [m] abscissa of a point load; none: the tip
+  std::optional<double> from, to;      ///< [m] both: a distributed load between these abscissae
+  Vec3 force = Vec3::Zero();           ///< [N], distributed [N/m]
+  Vec3 moment = Vec3::Zero();          ///< [N m], distributed [N]
+  bool follower = false;               ///< in the axes of the cross-section (true) or of the world
+  Drive factor = Table{{0.0}, {1.0}};  ///< both are multiplied by it [-]
+};
+
+/// What is recorded of a material point, of a solid (`point`) or a rod (`at`).
+enum class Quantity { position, strain, force, moment, stress };
 struct Output {
   std::optional<std::string> solid;
   std::optional<std::string> rod;
-  Point point;                  ///< on a solid
-  std::optional<double> at;     ///< [m] abscissa on a rod
-  std::optional<double> reach;  ///< as for Slide
+  Point point;                             ///< on a solid
+  std::optional<double> at;                ///< [m] abscissa on a rod
+  std::optional<double> reach;             ///< as for Slide
+  Quantity quantity = Quantity::position;  ///< other than position: of a rod
 };
+
+/// What is computed. `dynamic`: the motion; `quasi_static`: equilibrium at every time of the grid, without inertia and
+/// damping; `static`: equilibrium at the end of the duration, followed from its start by as many load steps as needed,
+/// past limit points too; `modal`: natural frequencies and modes about the equilibrium at the start.
+enum class Analysis { dynamic, quasi_static, statics, modal };
 
 struct Time {
   double step = 0.01;     ///< [s] > 0
@@ -170,13 +283,16 @@ struct Scene {
   std::filesystem::path folder;  ///< meshes are looked up from here
   Time time;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
+  Analysis analysis = Analysis::dynamic;
+  int modes = 6;  ///< of a modal analysis
   Newton newton;
   View view;
   Named<Frame> frames;
   Named<Solid> solids;
   Named<Rod> rods;
-  std::vector<Slide> couplings;
+  std::vector<Coupling> couplings;
   Named<Actuator> actuators;
+  Named<Load> loads;
   Named<Output> outputs;
 };
 

@@ -1,15 +1,28 @@
 // The numbers of a state that people plot: the columns of signals.csv after time, status and newton.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "sinew/sim/snapshot.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew {
 
-/// <output>.x|y|z [m]; <actuator>.displacement [m] and .force [N], or .angle [rad] and .torque [N m].
+/// One list for all signals: the names of a group of columns, and what fills them. A new quantity is a new entry.
+struct SignalGroup {
+  std::vector<std::string> names;
+  std::function<std::vector<double>(const Model&, const State&)> values;
+};
+
+/// In the order of the columns:
+///   <output>.x|y|z [m], or .torsion .. .shear_z [1/m, -] of `strain`, .x|y|z in the axes of the cross-section of
+///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; <actuator>.displacement [m] and
+///   .force [N], or .angle [rad] and .torque [N m]; energy.kinetic|elastic|weight|work|dissipated [J]: weight is that
+///   of the gravitational field, 0 at the start; work is done by motors and loads, dissipated is what is missing in the
+///   balance: damping of the material and of the time step (and, with a minus, work of moving frames).
+std::vector<SignalGroup> signal_groups(const Model& model);
+
 std::vector<std::string> signal_names(const Model& model);
 std::vector<double> signal_values(const Model& model, const State& state);
 
@@ -20,7 +33,11 @@ Vec3 output_position(const Model& model, const State& state, const OutputModel& 
 /// 0 if none was dropped.
 double dropped_gap(const Model& model, const State& state);
 
-/// What can be seen of a state: nodes, stresses, rods sampled at section ends and between, points and outputs.
-Snapshot snapshot(const Model& model, const State& state, const std::string& status);
+/// Stored in the material and the motion of everything, and its potential in gravity since the start [J].
+struct EnergyBalance {
+  double kinetic = 0.0, elastic = 0.0, weight = 0.0;
+  double total() const { return kinetic + elastic + weight; }
+};
+EnergyBalance energy_balance(const Model& model, const State& state);
 
 }  // namespace sinew

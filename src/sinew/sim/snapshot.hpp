@@ -18,18 +18,23 @@ struct SolidSnapshot {
   Eigen::VectorXd von_mises;  ///< [Pa] per tetrahedron
 };
 
-/// A rod sampled along its length; per-point values belong to the section that starts at or holds the point.
+/// Values at the points of a rod, by name: what ParaView shows.
+struct PointField {
+  std::string name;
+  Eigen::MatrixXd values;  ///< components x points
+};
+
+/// A rod sampled along its length. Where a value jumps it belongs to the section that starts at the point.
 struct RodSnapshot {
   std::string name;
-  double radius = 0.0;        ///< [m]; 0 for a geometric cable
+  Eigen::VectorXd radius;     ///< [m] outer, m values; 0 for a geometric cable
   Eigen::VectorXd abscissa;   ///< [m] m samples, from base to tip
   Eigen::Matrix3Xd points;    ///< [m] 3 x m centreline
   Eigen::Matrix3Xd tangents;  ///< 3 x m unit tangents
-  Eigen::Matrix<double, 6, Eigen::Dynamic>
-      strains;  ///< 6 x m, order of NOTATION.md [1/m and -]; empty for a geometric cable
-  Eigen::Matrix<double, 6, Eigen::Dynamic>
-      stresses;               ///< 6 x m internal moments [N m] and forces [N] of the same strains
-  Eigen::VectorXd von_mises;  ///< [Pa] largest of the cross section, m values
+  Eigen::VectorXd von_mises;  ///< [Pa] largest of the cross-section; empty for a geometric cable
+  /// Strains (NOTATION.md) [1/m and -], internal moments [N m] and forces [N] in the axes of the cross-section,
+  /// stresses [Pa] axial, of bending, of torsion; none for a geometric cable.
+  std::vector<PointField> fields;
 };
 
 struct MarkSnapshot {

@@ -13,28 +13,37 @@ State initial_state(const Model& model) {
   }
   for (const RodModel& rod : model.rods) {
     RodState& own = state.rods.emplace_back();
-    if (rod.geometric) {
-      own.q = Eigen::VectorXd::Zero(rod.cable.coordinates());
-    } else {
-      own.q = rod::rest_coordinates(rod.rod);
-      const auto shape = rod::configure(rod.rod, rod.base, own.q);
-      const auto count = static_cast<Eigen::Index>(rod.rod.masses.size());
-      own.masses.resize(3, count);
-      for (Eigen::Index i = 0; i < count; ++i)
-        own.masses.col(i) = rod::position(shape, rod.rod.masses[i].s, rod.rod.masses[i].offset);
-      own.velocity.setZero(3, count);
-    }
-    state.tensions.push_back(0.0);
+    own.q = rod.start;
+    const auto shape = rod::configure(rod.rod, rod.base, own.q);
+    const auto count = static_cast<Eigen::Index>(rod.rod.masses.size());
+    own.masses.resize(3, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      own.masses.col(i) = rod::position(shape, rod.rod.masses[i].s, rod.rod.masses[i].offset);
+    own.velocity.setZero(3, count);
+    own.internal.setZero(6, 2 * rod.rod.count());
   }
+  for (const CableModel& cable : model.cables)
+    state.cables.push_back({Eigen::VectorXd::Zero(cable.cable.coordinates())});
+  state.lambda.setZero(model.rows);
   for (const PointModel& point : model.points) {
-    state.points.push_back({point.abscissa, true, Vec3::Zero()});
+    const bool waits = point.line.rod >= 0 && point.abscissa > model.rods[point.line.rod].rod.length();
+    state.points.push_back({point.abscissa, !waits});
     if (point.cable_point >= 0) {
       const SolidModel& solid = model.solids[point.solid];
-      state.rods[point.rod].q.segment<3>(1 + 3 * point.cable_point) =
+      state.cables[point.line.cable].z.segment<3>(1 + 3 * point.cable_point) =
           solid::position(point.where, solid.body.tetrahedra, solid.body.rest);
     }
   }
+  state.followed.setZero(model.followed);
+  for (const TieModel& tie : model.ties) {
+    if (tie.unknown < 0) continue;
+    const int at = tie.unknown - model.first_followed;
+    state.followed.segment<3>(at) = tie.holder.p;
+    if (!tie.directors) continue;
+    for (int i = 0; i < 3; ++i) state.followed.segment<3>(at + 3 + 3 * i) = tie.length * tie.holder.R.col(i);
+  }
   state.actuators.assign(model.actuators.size(), 0.0);
+  state.loads.assign(model.loads.size(), 0.0);
   return state;
 }
 
@@ -53,15 +62,18 @@ void each_number(StateType& state, const Visit& visit) {
   }
   for (auto& rod : state.rods) {
     array(rod.q);
+    array(rod.turned);
     array(rod.masses);
     array(rod.velocity);
+    array(rod.internal);
   }
-  for (auto& point : state.points) {
-    visit(point.s);
-    array(point.lambda);
-  }
+  for (auto& cable : state.cables) array(cable.z);
+  for (auto& point : state.points) visit(point.s);
+  array(state.followed);
+  array(state.lambda);
   for (auto& value : state.actuators) visit(value);
-  for (auto& value : state.tensions) visit(value);
+  for (auto& value : state.loads) visit(value);
+  visit(state.energies.work);
 }
 
 }  // namespace

@@ -13,15 +13,25 @@ struct SolidState {
 };
 
 struct RodState {
-  Eigen::VectorXd q;          ///< coordinates (strains, base); of a geometric cable (d, points)
-  Eigen::Matrix3Xd masses;    ///< [m] where the mass points are
-  Eigen::Matrix3Xd velocity;  ///< [m/s] of the mass points
+  Eigen::VectorXd q;                                  ///< coordinates of base and strains
+  rod::Mat3 turned = rod::Mat3::Identity();           ///< how far a floating base has turned
+  Eigen::Matrix3Xd masses;                            ///< [m] where the mass points are
+  Eigen::Matrix3Xd velocity;                          ///< [m/s] of the mass points
+  Eigen::Matrix<double, 6, Eigen::Dynamic> internal;  ///< [N m], [N] at both ends of each section, see rod::Equations
+};
+
+struct CableState {
+  Eigen::VectorXd z;  ///< [m] (how far its base is out, points)
 };
 
 struct PointState {
-  double s = 0.0;              ///< [m] abscissa
-  bool on = true;              ///< false: the rod's end has passed it, the row is off
-  Vec3 lambda = Vec3::Zero();  ///< [N] force of the rod on the solid
+  double s = 0.0;  ///< [m] abscissa
+  bool on = true;  ///< false: the rod's end has passed it, the row is off
+};
+
+/// What has been put into the rods and solids since the start [J].
+struct Energies {
+  double work = 0.0;  ///< by motors and loads
 };
 
 struct State {
@@ -29,9 +39,13 @@ struct State {
   double time = 0.0;  ///< [s]
   std::vector<SolidState> solids;
   std::vector<RodState> rods;
+  std::vector<CableState> cables;
   std::vector<PointState> points;
+  Eigen::VectorXd followed;       ///< [m] what ties to bodies follow, in the order of their unknowns
+  Eigen::VectorXd lambda;         ///< [N] multipliers of all rows; of an angle [N m]
   std::vector<double> actuators;  ///< [N] or [N m] force of each motor
-  std::vector<double> tensions;   ///< [N] per rod: of a geometric cable, else 0
+  std::vector<double> loads;      ///< factor of each load
+  Energies energies;
 };
 
 State initial_state(const Model& model);

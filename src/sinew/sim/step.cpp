@@ -7,16 +7,19 @@
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/clock.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/reduced.hpp"
 
 namespace sinew {
 
 Command command_at(const Model& model, double time) {
+  const auto value = [time](const Drive& drive) {
+    const Table* table = std::get_if<Table>(&drive);
+    return table ? value_at(*table, time) : 0.0;
+  };
   Command command;
-  for (const ActuatorModel& actuator : model.actuators) {
-    const Table* table = std::get_if<Table>(&actuator.drive);
-    command.push_back(table ? value_at(*table, time) : 0.0);
-  }
+  for (const ActuatorModel& actuator : model.actuators) command.actuators.push_back(value(actuator.drive));
+  for (const LoadModel& load : model.loads) command.loads.push_back(value(load.factor));
   return command;
 }
 
@@ -58,41 +61,93 @@ void follow_points(const StepContext& context, State& iterate) {
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
     const PointModel& point = context.model.points[k];
     if (point.unknown < 0) continue;
-    const RodModel& rod = context.model.rods[point.rod];
-    if (point.rod != configured) {
-      shape = rod::configure(rod.rod, context.bases[point.rod], iterate.rods[point.rod].q);
-      configured = point.rod;
+    const int number = point.line.rod;
+    const rod::Rod& rod = context.model.rods[number].rod;
+    if (number != configured) {
+      shape = rod::configure(rod, base_of(context, iterate, number), iterate.rods[number].q);
+      configured = number;
     }
     const Vec3 P =
         solid::position(point.where, context.model.solids[point.solid].body.tetrahedra, iterate.solids[point.solid].x);
     PointState& state = iterate.points[k];
     state.s = constraint::project(shape, state.s, P);
-    state.on = state.s <= rod.rod.length();
+    state.on = state.s <= rod.length();
     if (!state.on) {
-      state.s = rod.rod.length() * (1.0 + 1e-12);
-      state.lambda.setZero();
+      state.s = rod.length() * (1.0 + 1e-12);
+      iterate.lambda.segment<3>(point.row).setZero();
     }
   }
 }
 
-/// Velocities and mass points at the end of an accepted step.
-void finish(const StepContext& context, State& next) {
+/// A base that turns freely in all three directions counts its turns from where it is now, so they never come near the
+/// axes' gimbal lock.
+void rebase(const rod::Rod& rod, RodState& state) {
+  for (int i = 0; i < rod.base_coordinates(); ++i) {
+    if (!rod.base[i].turns) continue;
+    state.turned = state.turned * lie::exp(state.q[i] * rod.base[i].sign * Vec3::Unit(rod.base[i].axis));
+    state.q[i] = 0.0;
+  }
+}
+
+/// Work of motors and loads over the step, by the mean of their forces at its ends.
+double work(const StepContext& context, const State& next) {
+  const Model& model = context.model;
+  double sum = 0.0;
+  const std::vector<double> before = motor_positions(model, context.start), after = motor_positions(model, next);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i)
+    sum += 0.5 * (context.start.actuators[i] + next.actuators[i]) * (after[i] - before[i]);
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    const LoadModel& load = model.loads[i];
+    const rod::Rod& rod = model.rods[load.rod].rod;
+    const Placement base = rod_base(model, context.start, load.rod);
+    const auto start = rod::configure(rod, {base, context.start.rods[load.rod].turned}, context.start.rods[load.rod].q);
+    const auto end = rod::configure(rod, base_of(context, next, load.rod), next.rods[load.rod].q);
+    for (const LoadModel::At& at : load.at) {
+      const rod::Branch a = rod::branch(start, at.s), b = rod::branch(end, at.s);
+      const Vec3 turn = lie::log(b.R * a.R.transpose());
+      const Vec3 along =
+          load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
+      const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
+      sum += 0.5 * (context.start.loads[i] + context.command.loads[i]) * at.weight *
+             (load.force.dot(along) + load.moment.dot(about));
+    }
+  }
+  return sum;
+}
+
+/// Velocities, mass points and what else belongs to an accepted step.
+void finish(const StepContext& context, const Reduced& reduced, State& next) {
+  const Model& model = context.model;
   next.time = context.start.time + context.h;
   for (std::size_t i = 0; i < next.solids.size(); ++i)
-    next.solids[i].v = (next.solids[i].x - context.start.solids[i].x) / context.h;
+    next.solids[i].v = (next.solids[i].x - context.start.solids[i].x) * context.rate;
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
-    const RodModel& rod = context.model.rods[i];
-    if (rod.geometric) continue;
-    const rod::Configuration shape = rod::configure(rod.rod, context.bases[i], next.rods[i].q);
-    for (std::size_t m = 0; m < rod.rod.masses.size(); ++m) {
-      next.rods[i].masses.col(static_cast<Eigen::Index>(m)) =
-          rod::position(shape, rod.rod.masses[m].s, rod.rod.masses[m].offset);
+    const rod::Rod& rod = model.rods[i].rod;
+    const auto shape = rod::configure(rod, base_of(context, next, static_cast<int>(i)), next.rods[i].q);
+    rod::Branch at;
+    double s = -1.0;
+    for (std::size_t m = 0; m < rod.masses.size(); ++m) {
+      if (rod.masses[m].s != s) at = rod::branch(shape, s = rod.masses[m].s);
+      next.rods[i].masses.col(static_cast<Eigen::Index>(m)) = at.p + at.R * rod.masses[m].offset;
     }
-    next.rods[i].velocity = (next.rods[i].masses - context.start.rods[i].masses) / context.h;
+    next.rods[i].velocity = (next.rods[i].masses - context.start.rods[i].masses) * context.rate;
+    next.rods[i].internal = reduced.internal[i];
   }
   for (std::size_t i = 0; i < next.actuators.size(); ++i) {
-    if (context.model.actuators[i].row < 0) next.actuators[i] = context.command[i];
+    const int row = model.actuators[i].row;
+    next.actuators[i] = row < 0 ? context.command.actuators[i] : next.lambda[row];
   }
+  next.loads = context.command.loads;
+  next.energies.work += work(context, next);
+  for (std::size_t i = 0; i < next.rods.size(); ++i) {
+    if (model.rods[i].floats) rebase(model.rods[i].rod, next.rods[i]);
+  }
+}
+
+bool finite(const solve::CoupledProblem& problem) {
+  return problem.r.allFinite() && problem.c.allFinite() &&
+         std::all_of(problem.chains.begin(), problem.chains.end(),
+                     [](const solve::ChainPart& part) { return part.r.allFinite(); });
 }
 
 bool finite(const State& state) {
@@ -118,6 +173,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
   const bool fixed = newton.iterations > 0;
   const solid::Tangent tangent = fixed ? solid::Tangent::rotated : solid::Tangent::exact;
   double stiffness = 0.0;
+  Reduced reduced;
   const auto fail = [&](Status status, std::string detail) -> StepResult {
     report.status = status;
     report.detail = std::move(detail);
@@ -127,7 +183,6 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
   for (;; ++report.newton) {
     // Where are we: unbalanced forces of volumes and rods, violation of the rows.
     std::vector<SolidForces> forces;
-    Reduced reduced;
     double largest = 0.0, scale = 0.0;
     {
       const Clock clock(report.times.forces);
@@ -147,7 +202,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     report.violation = reduced.violation;
     const bool finite_forces =
         std::all_of(forces.begin(), forces.end(), [](const SolidForces& f) { return f.r.allFinite(); }) &&
-        reduced.problem.r.allFinite() && reduced.problem.c.allFinite();
+        finite(reduced.problem);
     if (!finite_forces || !std::isfinite(largest) || !std::isfinite(reduced.violation))
       return fail(Status::diverged, "forces are not finite");
     const double rounding = 1e-14 * stiffness * model.size;
@@ -180,7 +235,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
       farthest = std::max(farthest, dx.back().cwiseAbs().maxCoeff());
     }
     // A linearisation is worth nothing beyond a good part of a radian or of the body's size.
-    const double turn = largest_turn(context, solution.dz);
+    const double turn = largest_turn(context, solution);
     double fraction = 1.0;
     if (!fixed && turn > 0.8) fraction = 0.8 / turn;
     if (!fixed && farthest > 0.3 * model.size) fraction = std::min(fraction, 0.3 * model.size / farthest);
@@ -188,13 +243,13 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     advance_reduced(context, solution, fraction, iterate);
   }
 
-  finish(context, iterate);
+  finish(context, reduced, iterate);
   if (!finite(iterate)) return fail(Status::diverged, "the new state is not finite");
   for (std::size_t k = 0; k < model.points.size(); ++k) {
     const PointModel& point = model.points[k];
-    if (point.unknown >= 0 && iterate.points[k].s < -kGuide * model.rods[point.rod].length()) {
-      return fail(Status::rod_exhausted, "rods." + model.rods[point.rod].name);
-    }
+    if (point.unknown < 0) continue;
+    const RodModel& rod = model.rods[point.line.rod];
+    if (iterate.points[k].s < -kGuide * rod.rod.length()) return fail(Status::rod_exhausted, "rods." + rod.name);
   }
   report.status = fixed ? Status::linearized : Status::converged;
   return {std::move(iterate), report};

@@ -9,11 +9,13 @@
 
 namespace sinew {
 
-/// What the motors are told for the end of a step: one value per actuator, in the unit of what drives it (N, m, N m,
-/// rad).
-using Command = std::vector<double>;
+/// What motors and loads are told for the end of a step.
+struct Command {
+  std::vector<double> actuators;  ///< one each, in the unit of what drives it (N, m, N m, rad)
+  std::vector<double> loads;      ///< factor of each [-]
+};
 
-/// The values of all tables at a time; actuators driven from outside get 0.
+/// The values of all tables at a time; what is driven from outside gets 0.
 Command command_at(const Model& model, double time);
 
 /// Seconds spent, summed over the iterations of a step.

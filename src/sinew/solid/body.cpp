@@ -80,8 +80,7 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
 
 Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
                           double* scale) {
-  const double h = start.h;
-  const Eigen::Matrix3Xd v = (x - start.x) / h;
+  const Eigen::Matrix3Xd v = (x - start.x) * start.rate;
   const Eigen::Matrix3Xd elastic = elastic_force(body, x);
   Eigen::Matrix3Xd viscous = Eigen::Matrix3Xd::Zero(3, body.nodes());
   if (body.damping_stiffness > 0.0) {
@@ -95,7 +94,7 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
     }
   }
   const Eigen::Matrix3Xd inertia =
-      ((v - start.v) / h + body.damping_mass * v).array().rowwise() * body.masses.transpose().array();
+      ((v - start.v) * start.rate + body.damping_mass * v).array().rowwise() * body.masses.transpose().array();
   const Eigen::Matrix3Xd weight = gravity * body.masses.transpose();
   if (scale)
     *scale =
@@ -105,7 +104,7 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
 
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
                       const InsertBlock& insert) {
-  const double viscous = body.damping_stiffness / start.h;
+  const double viscous = body.damping_stiffness * start.rate;
   for (int e = 0; e < body.elements(); ++e) {
     const Mat3 F = deformation_gradient(body, e, x);
     const Mat3 R = polar_rotation(F);
@@ -126,8 +125,8 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
   }
 }
 
-Eigen::VectorXd mass_diagonal(const Body& body, double h) {
-  return body.masses * ((1.0 + body.damping_mass * h) / (h * h));
+Eigen::VectorXd mass_diagonal(const Body& body, double rate) {
+  return body.masses * ((rate + body.damping_mass) * rate);
 }
 
 Eigen::VectorXd von_mises(const Body& body, const Eigen::Matrix3Xd& x) {

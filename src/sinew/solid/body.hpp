@@ -42,7 +42,7 @@ std::vector<Mat3> rotations(const Body& body, const Eigen::Matrix3Xd& x);
 struct StepStart {
   Eigen::Matrix3Xd x, v;       ///< [m], [m/s] at the start
   std::vector<Mat3> rotation;  ///< polar rotations there: the frame in which damping acts during the step
-  double h = 0.0;              ///< [s]
+  double rate = 0.0;           ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
 };
 
 /// Elastic force [N], 3 x n: dE/dx, so that it stands with a plus on the left of the equation of motion.
@@ -69,8 +69,8 @@ using InsertBlock = std::function<void(int element, int local_a, int local_b, co
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
                       const InsertBlock& insert);
 
-/// Per node: m (1 + a h) / h^2.
-Eigen::VectorXd mass_diagonal(const Body& body, double h);
+/// Per node: m (1 / h + a) / h.
+Eigen::VectorXd mass_diagonal(const Body& body, double rate);
 
 /// Von Mises stress [Pa] per element.
 Eigen::VectorXd von_mises(const Body& body, const Eigen::Matrix3Xd& x);

@@ -1,0 +1,88 @@
+// Couplings: what ties a rod to something else. A kind is a struct in the scene, a table here and a line in `coupling`.
+#include "sinew/io/scene_objects.hpp"
+#include "sinew/io/scene_values.hpp"
+
+namespace sinew::io {
+namespace {
+
+using enum Need;
+
+Type<Slide> slide() {
+  return map<Slide>(
+      {"a slide",
+       {field<Slide>({"rod", required, "the rod that slides", "cable"}, &Slide::rod, name_of("rod")),
+        field<Slide>({"solid", required, "the solid it slides in", "finger"}, &Slide::solid, name_of("solid")),
+        field<Slide>({"points", optional, "their number from base to tip, or their ascending abscissae [m]", "15"},
+                     &Slide::points, count_or_lengths(1, false)),
+        field<Slide>({"channel", optional, "the points in the solid that the rod runs through, at rest [m]",
+                      "[[10 mm, 0, 2 mm], [90 mm, 0, 2 mm]]"},
+                     &Slide::channel, points({1, 10000})),
+        field<Slide>({"anchor_tip", optional, "what holds the tip: its position, its pose, or none", "position"},
+                     &Slide::anchor_tip, word_of<AnchorTip>({"none", "position", "pose"})),
+        field<Slide>({"reach", optional, "how far outside the mesh a point may lie [m]", "2 mm"}, &Slide::reach,
+                     quantity(Dimension::length, at_least(0.0)))},
+       {at_most_one({"points", "channel"})}});
+}
+
+/// Some of the axes x, y, z.
+Type<std::array<bool, 3>> axes() {
+  enum class Axis { x, y, z };
+  const Type<std::vector<Axis>> some = distinct<Axis>("axes", {"x", "y", "z"}, {0, 3});
+  const auto read = [=](const At& at) {
+    std::array<bool, 3> held = {};
+    for (const Axis axis : some.read(at)) held[static_cast<std::size_t>(axis)] = true;
+    return held;
+  };
+  const auto show = [=](const std::array<bool, 3>& held) {
+    std::vector<Axis> listed;
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
+      if (held[static_cast<std::size_t>(axis)]) listed.push_back(axis);
+    }
+    return some.show(listed);
+  };
+  return {read, some.schema, show};
+}
+
+Type<Tie> tie() {
+  const auto check = [](const Tie& tie, const At& at) {
+    constexpr std::array<bool, 3> none = {};
+    if (tie.along == none && tie.about == none) {
+      at.child("along").refuse("must not be empty: the tie would hold nothing",
+                               "list the axes along which it holds, or those about which it holds as `about`");
+    }
+    if (tie.other == tie.rod && tie.other_at == tie.at) {
+      at.child("other").refuse("is the very point that is tied", "tie it to another rod, or give `at` and `other_at`");
+    }
+  };
+  return map<Tie>(
+      {"a tie",
+       {field<Tie>({"rod", required, "the rod whose point is held", "cable"}, &Tie::rod, name_of("rod")),
+        field<Tie>({"at", optional, "the abscissa of that point [m]; its tip if left out", "50 mm"}, &Tie::at,
+                   quantity(Dimension::length, at_least(0.0))),
+        field<Tie>(
+            {"frame", optional, "the frame that holds it; the ground if there is no frame, solid or other", "hand"},
+            &Tie::frame, name_of("frame")),
+        field<Tie>({"solid", optional, "the solid that holds it", "finger"}, &Tie::solid, name_of("solid")),
+        field<Tie>({"other", optional, "the other rod that holds it", "spine"}, &Tie::other, name_of("rod")),
+        field<Tie>({"other_at", optional, "the abscissa on the other rod [m]; its tip if left out", "50 mm"},
+                   &Tie::other_at, quantity(Dimension::length, at_least(0.0))),
+        field<Tie>({"along", optional, "the axes of the holder along which it is held", "[x, y, z]"}, &Tie::along,
+                   axes()),
+        field<Tie>({"about", optional, "the axes of the holder about which it is held", "[x, y, z]"}, &Tie::about,
+                   axes()),
+        field<Tie>({"reach", optional, "how far outside the solid's mesh the point may lie [m]", "2 mm"}, &Tie::reach,
+                   quantity(Dimension::length, at_least(0.0)))},
+       {at_most_one({"frame", "solid", "other"}), needs("other_at", "other"), needs("reach", "solid")},
+       check});
+}
+
+}  // namespace
+
+Type<Coupling> coupling() {
+  return one_of_kinds<Coupling>(
+      "a coupling",
+      {kind<Coupling>("slide", "a rod that slides through a solid", "{rod: cable, solid: finger, points: 15}", slide()),
+       kind<Coupling>("tie", "a point of a rod that is held", "{rod: cable, at: 50 mm, frame: hand}", tie())});
+}
+
+}  // namespace sinew::io

@@ -1,0 +1,25 @@
+// The objects of a scene file; each has its keys in a file of its own, scene_solids.cpp and so on.
+#pragma once
+
+#include "sinew/io/fields.hpp"
+#include "sinew/sim/scene.hpp"
+
+namespace sinew::io {
+
+Type<Frame> frame();
+Type<Solid> solid();
+Type<Rod> rod();
+Type<Coupling> coupling();
+Type<Actuator> actuator();
+Type<Load> load();
+Type<Output> output();
+
+/// Of a rod, or of a part of one.
+Type<CrossSection> cross_section();
+/// A section whose stiffness is given wants no modulus.
+enum class Wants { modulus, nothing };
+Type<RodMaterial> rod_material(Wants wants);
+/// A `section` goes with a `material`, unless its stiffness is given.
+Rule material_for_section();
+
+}  // namespace sinew::io

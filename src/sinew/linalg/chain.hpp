@@ -1,0 +1,104 @@
+// Matrices of open chains, factored in time proportional to their length.
+//
+// Everything beyond a link feels the link only as a rigid motion, so the coordinates x_k of the links of a chain (here:
+// the sections of a rod) meet each other through six numbers: the twist of what lies beyond,
+//
+//     A_kk = D_k,     A_jk = T_j^T V_k,     A_kj = U_k^T T_j        (link j nearer to the base than k)
+//
+// with T_k the twists that x_k gives to everything beyond, and V_k, U_k wrenches. README.md of this folder derives the
+// recursions.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace sinew::linalg {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Matrix6X = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// A chain matrix: the blocks above, those of all links side by side.
+struct Chain {
+  std::vector<int> first;  ///< first coordinate of each link, and the number of all at the end
+  Matrix6X T, V;           ///< 6 x n
+  Matrix6X U;              ///< 6 x n; empty if the matrix is symmetric, when U = V
+  Eigen::MatrixXd D;       ///< (largest link) x n: block k in columns first[k] .. of it, its rows on top
+
+  int links() const { return static_cast<int>(first.size()) - 1; }
+  int coordinates() const { return first.back(); }
+  int size(int k) const { return first[k + 1] - first[k]; }
+  bool symmetric() const { return U.cols() == 0; }
+  auto block(int k) { return D.block(0, first[k], size(k), size(k)); }
+  auto block(int k) const { return D.block(0, first[k], size(k), size(k)); }
+  auto twists(int k) const { return T.middleCols(first[k], size(k)); }
+  auto wrenches(int k) const { return V.middleCols(first[k], size(k)); }
+  auto left_wrenches(int k) const { return (symmetric() ? V : U).middleCols(first[k], size(k)); }
+};
+
+/// All zeros, for links of the given sizes.
+Chain make_chain(const std::vector<int>& sizes, bool symmetric);
+
+/// The matrix written out, for tests and for the solver of last resort.
+Eigen::MatrixXd dense(const Chain& chain);
+
+/// A x + U^T tau: what all links answer to x when the base moves by the twist tau.
+Eigen::VectorXd multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau = Vec6::Zero());
+
+/// What couples one outside unknown to a chain: for every link nearer to the base than `link` the wrench `g`, as
+/// T_j^T g, and for the link itself the vector `b`.
+struct Attachment {
+  int link = 0;
+  Vec6 g = Vec6::Zero();
+  Eigen::VectorXd b;
+};
+
+/// The vector of an attachment over all coordinates.
+Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment);
+
+/// R x for attachments sorted by link, and R^T y.
+Eigen::VectorXd along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x);
+Eigen::VectorXd across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y);
+
+/// A = L S R factored from the tip to the base; no pivoting between links.
+class ChainFactor {
+ public:
+  /// False where a link's pivot is singular or not finite. The chain must outlive the factor.
+  bool factor(const Chain& chain);
+  /// Negative eigenvalues of a symmetric A (Sylvester): 0 exactly where it is positive definite.
+  int negative() const { return negative_; }
+
+  /// x = A^-1 (b - U^T tau). `base`, if given, receives sum_k V_k x_k: the wrench that the base feels.
+  Eigen::VectorXd solve(const Eigen::VectorXd& b, const Vec6& tau = Vec6::Zero(), Vec6* base = nullptr) const;
+
+  /// A^-T b, and U of it as the base feels it.
+  Eigen::VectorXd solve_transposed(const Eigen::VectorXd& b, Vec6* base = nullptr) const;
+
+  /// The wrench the base feels per twist of the base, -V A^-1 U^T.
+  const Mat6& base_response() const { return base_; }
+
+  /// What attachments sorted by link see of each other and of the base through the chain.
+  struct Condensed {
+    Eigen::MatrixXd W;   ///< R A^-1 R^T
+    Matrix6X arriving;   ///< 6 x count: g_i - V A^-1 R_i^T, the wrench that the base feels
+    Matrix6X answering;  ///< 6 x count: g_i - U A^-T R_i^T, what an attachment feels of a twist of the base
+  };
+  Condensed condense(const std::vector<Attachment>& attachments) const;
+
+ private:
+  bool factor_only(const Chain& chain);
+  void condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& W, Matrix6X& arriving) const;
+
+  const Chain* chain_ = nullptr;
+  /// Of an unsymmetric matrix its transposed, in which U and V change places.
+  std::shared_ptr<const Chain> turned_chain_;
+  std::shared_ptr<const ChainFactor> turned_;
+  Matrix6X Y_;         ///< 6 x n: (P T + V) S^-1
+  Matrix6X C_;         ///< 6 x n: (U^T + T^T P)^T
+  Eigen::MatrixXd S_;  ///< inverses of the pivots, as D
+  Mat6 base_ = Mat6::Zero();
+  int negative_ = 0;
+};
+
+}  // namespace sinew::linalg

@@ -1,0 +1,55 @@
+// Forces on the material points of a rod: generalised forces and their exact tangent, (6) and (9), in one pass from the
+// tip to the base. What lies beyond a section acts on it only through six forces and how they change with a twist.
+#pragma once
+
+#include <span>
+
+#include "sinew/rod/kinematics.hpp"
+
+namespace sinew::rod {
+
+/// A force and moment on a material point, and a weight (mass / h^2 in a time step, 0 for a plain force).
+struct PointLoad {
+  double s = 0.0;
+  Vec3 offset = Vec3::Zero();
+  Vec3 force = Vec3::Zero();   ///< [N] world axes, constant; of a follower: turning with the cross-section from here on
+  double weight = 0.0;         ///< [kg/s^2]
+  Vec3 moment = Vec3::Zero();  ///< [N m]
+  bool follower = false;
+  int slide = -1;  ///< number among the slides: the abscissa is an unknown, too
+};
+
+/// What an abscissa s that carries a force f adds to the equations of a rod: f . gamma_qs and f . gamma_ss.
+struct Slide {
+  linalg::Attachment attachment;  ///< over the strain coordinates
+  double second = 0.0;
+};
+
+/// The equations of a rod in its coordinates (base, strains), linearised.
+struct Equations {
+  Eigen::VectorXd r;     ///< generalised forces
+  linalg::Chain chain;   ///< tangent of the strain coordinates
+  Eigen::MatrixXd base;  ///< tangent of the base's coordinates among themselves; with the strains: T_b^T V, U^T T_b
+  std::vector<Slide> slides;
+  Matrix6X internal;  ///< 6 x 2N: moment [N m] and force [N] at the start and the end of each section, in its own frame
+                      ///< there, that the loads beyond need for balance
+};
+
+/// All zeros. Follower forces and moments make the tangent unsymmetric.
+Equations make_equations(const Configuration& shape, bool symmetric, int slides = 0);
+bool conservative(std::span<const PointLoad> loads);
+
+/// With X_i(q) the loaded points and J_i their Jacobians, adds
+///     r     += sum J_i^T f_i  (and omega_i^T m_i),
+///     chain += sum w_i J_i^T J_i + d(J_i^T f_i)/dq           (exact),
+/// and fills slides and internal. `loads` must be sorted by s.
+void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations);
+
+/// Adds elastic forces K q of all sections, and viscous ones C (q - q_start) rate.
+void add_elasticity(const Rod& rod, const Eigen::VectorXd& q, const Eigen::VectorXd& start, double rate,
+                    Equations& equations);
+
+/// The tangent over all coordinates, written out: for tests and the solver of last resort.
+Eigen::MatrixXd dense_tangent(const Configuration& shape, const Equations& equations);
+
+}  // namespace sinew::rod

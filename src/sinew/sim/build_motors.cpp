@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/building.hpp"
+
+namespace sinew::building {
+
+namespace {
+
+rod::Tendon make_tendon(const Model& model, int rod, const Tendon& tendon, const std::string& path) {
+  const double length = model.rods[rod].rod.length();
+  rod::Tendon own;
+  own.from = abscissa_on(model, rod, tendon.from, path + ".from");
+  own.to = abscissa_on(model, rod, tendon.to, path + ".to");
+  if (!(own.to > own.from))
+    reject(path + ".to", text(own.to) + " m", "must be greater than `from`, " + text(own.from) + " m",
+           "a tendon runs towards the tip");
+  for (const double distance : {tendon.distance.start, tendon.distance.end}) {
+    if (!(distance >= 0.0 && distance <= length))
+      reject(path + ".distance", text(distance) + " m", "must lie between 0 and the length of the rod",
+             "give the distance of the tendon from the centreline");
+  }
+  own.start_distance = tendon.distance.start;
+  own.end_distance = tendon.distance.end;
+  own.start_angle = tendon.angle.start;
+  own.end_angle = tendon.angle.end;
+  return own;
+}
+
+void check_drive(const Drive& drive, const std::string& path) {
+  const Table* table = std::get_if<Table>(&drive);
+  if (table && (table->times.empty() || table->times.size() != table->values.size()))
+    reject(path, std::to_string(table->times.size()) + " times",
+           "a table needs as many times as values, and at least one", "give a constant or a table");
+}
+
+}  // namespace
+
+void build_actuator(Model& model, const std::string& name, const Actuator& actuator) {
+  const std::string path = "actuators." + name;
+  ActuatorModel own;
+  own.name = name;
+  own.line = find_line(model, actuator.rod, path + ".rod");
+  own.motion = actuator.motion;
+  own.driven = actuator.driven;
+  own.drive = actuator.drive;
+  const bool turns = actuator.driven == Driven::torque || actuator.driven == Driven::angle;
+  if (turns != (actuator.motion == Motion::rotation)) {
+    reject(path + ".motion", turns ? "translation" : "rotation", "does not fit what drives it",
+           "force and displacement translate, torque and angle rotate");
+  }
+  check_drive(actuator.drive, path);
+  if (actuator.tendon) {
+    if (own.line.rod < 0 || turns)
+      reject(path + ".tendon", name, "a tendon pulls inside a Cosserat rod",
+             "use `cable: cosserat`, and a force or displacement");
+    own.tendon = make_tendon(model, own.line.rod, *actuator.tendon, path + ".tendon");
+    const RodModel& rod = model.rods[own.line.rod];
+    own.tendon_length = rod::tendon_length(rod.rod, *own.tendon, rod.start).value;
+    model.actuators.push_back(own);
+    return;
+  }
+  if (own.line.cable >= 0) {
+    if (turns || actuator.axis)
+      reject(path + ".motion", turns ? "rotation" : "axis", "a geometric cable can only be pulled",
+             "use `cable: cosserat`");
+    for (const ActuatorModel& other : model.actuators) {
+      if (other.line == own.line)
+        reject(path, name, "the rod already has an actuator of this motion", "drive each motion of a base once");
+    }
+    model.actuators.push_back(own);
+    return;
+  }
+  RodModel& rod = model.rods[own.line.rod];
+  const rod::BaseMotion motion{turns, actuator.axis.value_or(0), !turns && !actuator.axis ? -1.0 : 1.0};
+  if (!add_base_motion(rod, motion)) {
+    const auto same = std::find_if(rod.rod.base.begin(), rod.rod.base.end(), [&](const rod::BaseMotion& b) {
+      return b.turns == motion.turns && b.axis == motion.axis;
+    });
+    const bool driven = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const ActuatorModel& other) {
+      return other.line == own.line && !other.tendon && (other.motion == Motion::rotation) == turns &&
+             other.unknown == motion.axis;
+    });
+    if (driven)
+      reject(path, name, "the rod already has an actuator of this motion", "drive each motion of a base once");
+    same->sign = motion.sign;
+  }
+  own.unknown = motion.axis;  // until unknowns are numbered
+  model.actuators.push_back(own);
+}
+
+void build_load(Model& model, const std::string& name, const Load& load) {
+  const std::string path = "loads." + name;
+  LoadModel own;
+  own.name = name;
+  own.rod = find_rod(model, load.rod, path + ".rod");
+  own.force = load.force;
+  own.moment = load.moment;
+  own.follower = load.follower;
+  own.factor = load.factor;
+  check_drive(load.factor, path + ".factor");
+  if (load.from.has_value() != load.to.has_value() || (load.from && load.at))
+    reject(path, name, "needs `at` for a point load, or `from` and `to` for a distributed one",
+           "give one or the other");
+  if (load.from) {
+    const double from = abscissa_on(model, own.rod, load.from, path + ".from");
+    const double to = abscissa_on(model, own.rod, load.to, path + ".to");
+    if (!(to > from))
+      reject(path + ".to", text(to) + " m", "must be greater than `from`, " + text(from) + " m",
+             "loads run towards the tip");
+    for (const rod::Section& section : model.rods[own.rod].rod.sections) {
+      const double begin = std::max(from, section.begin), end = std::min(to, section.end);
+      if (!(end > begin)) continue;
+      const rod::GaussRule& rule = rod::gauss_rule(4);
+      for (std::size_t g = 0; g < rule.node.size(); ++g)
+        own.at.push_back({begin + (end - begin) * rule.node[g], (end - begin) * rule.weight[g]});
+    }
+  } else {
+    own.at.push_back({abscissa_on(model, own.rod, load.at, path + ".at"), 1.0});
+  }
+  model.loads.push_back(own);
+}
+
+}  // namespace sinew::building

@@ -1,0 +1,34 @@
+#include "sinew/sim/building.hpp"
+
+namespace sinew::building {
+
+void build_output(Model& model, const std::string& name, const Output& output) {
+  const std::string path = "outputs." + name;
+  OutputModel own;
+  own.name = name;
+  own.quantity = output.quantity;
+  if (output.solid.has_value() == output.rod.has_value()) {
+    reject(path, "", "needs exactly one of solid and rod",
+           "write `{solid: NAME, point: [x, y, z]}` or `{rod: NAME, at: s}`");
+  }
+  if (output.solid) {
+    if (output.quantity != Quantity::position)
+      reject(path + ".quantity", "", "is known of rods only", "write `quantity: position`, or name a rod");
+    own.solid = find(model.scene.solids, *output.solid, path + ".solid", "solid");
+    const SolidModel& solid = model.solids[own.solid];
+    const Pose& pose = model.scene.solids[own.solid].second.pose;
+    const Vec3 x =
+        output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);
+    own.where = embed_within(solid, x, output.reach, path + ".point", "the point");
+    if (own.where.distance > 0.0) {
+      model.warnings.push_back(path + ": the point lies " + text(own.where.distance) +
+                               " m outside the mesh and is extrapolated");
+    }
+  } else {
+    own.rod = find_rod(model, *output.rod, path + ".rod");
+    own.abscissa = abscissa_on(model, own.rod, output.at, path + ".at");
+  }
+  model.outputs.push_back(own);
+}
+
+}  // namespace sinew::building

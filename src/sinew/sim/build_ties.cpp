@@ -1,0 +1,112 @@
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "sinew/sim/building.hpp"
+
+namespace sinew::building {
+
+namespace {
+
+std::vector<int> chosen(const std::array<bool, 3>& axes) {
+  std::vector<int> numbers;
+  for (int i = 0; i < 3; ++i) {
+    if (axes[static_cast<std::size_t>(i)]) numbers.push_back(i);
+  }
+  return numbers;
+}
+
+/// A tie of the rod's point at s to axes that stand in the world as `holder` at t = 0.
+TieModel& add_tie(Model& model, int coupling, int rod, double s, const rod::Mat3& axes) {
+  TieModel& tie = model.ties.emplace_back();
+  tie.rod = rod;
+  tie.coupling = coupling;
+  tie.s = s;
+  const rod::CurvePoint point = rod::curve_point(start_shape(model.rods[rod]), s);
+  tie.holder = {axes, point.position};
+  tie.own_axes = point.R.transpose() * axes;
+  tie.length = model.rods[rod].rod.length();
+  return tie;
+}
+
+/// Whether the holder's axes move and matter: about any, or along some but not all.
+bool needs_directors(const TieModel& tie) {
+  return tie.body() && (!tie.about.empty() || tie.along.size() == 1 || tie.along.size() == 2);
+}
+
+}  // namespace
+
+void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Vec3& point,
+              const solid::EmbeddedPoint& where, const std::vector<int>& along, const std::vector<int>& about) {
+  TieModel& tie = add_tie(model, coupling, rod, s, rod::Mat3::Identity());
+  tie.solid = solid;
+  tie.holder.p = point;
+  tie.along = along;
+  tie.about = about;
+  tie.directors = needs_directors(tie);
+  SolidRow row;
+  row.solid = solid;
+  row.where = where;
+  model.solid_rows.push_back(row);  // the point held
+  if (!tie.directors) return;
+  const solid::Body& body = model.solids[solid].body;
+  for (int i = 0; i < 3; ++i) {  // length * F e_i = sum_a x_a (length * grad N_a . e_i)
+    row.where.weights = tie.length * body.gradients[where.element].row(i).transpose();
+    row.where.distance = 0.0;
+    model.solid_rows.push_back(row);
+  }
+}
+
+void build_tie(Model& model, int number, const Tie& tie) {
+  const std::string path = "couplings." + std::to_string(number) + ".tie";
+  const int rod = find_rod(model, tie.rod, path + ".rod");
+  const double s = abscissa_on(model, rod, tie.at, path + ".at");
+  const std::vector<int> along = chosen(tie.along), about = chosen(tie.about);
+  if (along.empty() && about.empty()) reject(path, tie.rod, "holds nothing", "name axes in `along` or `about`");
+  if (tie.frame.has_value() + tie.solid.has_value() + tie.other.has_value() > 1)
+    reject(path, tie.rod, "can be held by one of frame, solid and other", "write one tie for each");
+  const Vec3 position = rod::position(start_shape(model.rods[rod]), s);
+  CouplingFacts facts;
+  facts.rod = rod;
+  model.couplings.push_back(facts);
+  if (tie.solid) {
+    const int solid = find(model.scene.solids, *tie.solid, path + ".solid", "solid");
+    const solid::EmbeddedPoint where =
+        embed_within(model.solids[solid], position, tie.reach, path + ".at", "the point of the rod");
+    if (along.size() == 3 && about.empty()) {  // an anchor, wherever on the rod
+      PointModel point;
+      point.line = {rod, -1};
+      point.solid = solid;
+      point.coupling = number;
+      point.where = where;
+      point.abscissa = s;
+      point.fixed = true;
+      model.points.push_back(point);
+      return;
+    }
+    // The point held is the one that the element's weights make of its nodes.
+    tie_axes(model, number, rod, s, solid, position, where, along, about);
+    return;
+  }
+  const int frame = find_frame(model.scene, tie.frame, path);
+  if (tie.other) {
+    const int other = find_rod(model, *tie.other, path + ".other");
+    if (other == rod) reject(path + ".other", *tie.other, "is the rod itself", "name another rod");
+    const double other_s = abscissa_on(model, other, tie.other_at, path + ".other_at");
+    const rod::CurvePoint holder = rod::curve_point(start_shape(model.rods[other]), other_s);
+    TieModel& own = add_tie(model, number, rod, s, holder.R);
+    own.other = other;
+    own.other_s = other_s;
+    own.other_offset = holder.R.transpose() * (position - holder.position);
+    own.along = along;
+    own.about = about;
+    own.directors = needs_directors(own);
+    return;
+  }
+  const rod::Mat3 axes = frame < 0 ? rod::Mat3::Identity() : frame_at(model.scene.frames[frame].second, 0.0).R;
+  TieModel& own = add_tie(model, number, rod, s, axes);
+  own.frame = frame;
+  own.along = along;
+  own.about = about;
+}
+
+}  // namespace sinew::building

@@ -1,0 +1,45 @@
+#include "sinew/sim/places.hpp"
+
+namespace sinew {
+
+namespace {
+
+Placement carried(const Model& model, const State& state, int frame, const Placement& base) {
+  return frame < 0 ? base : compose(frame_displacement(model.scene.frames[frame].second, state.time), base);
+}
+
+}  // namespace
+
+Placement rod_base(const Model& model, const State& state, int rod) {
+  return carried(model, state, model.rods[rod].frame, model.rods[rod].base);
+}
+
+Placement cable_base(const Model& model, const State& state, int cable) {
+  return carried(model, state, model.cables[cable].frame, model.cables[cable].base);
+}
+
+rod::Configuration rod_shape(const Model& model, const State& state, int rod) {
+  return rod::configure(model.rods[rod].rod, {rod_base(model, state, rod), state.rods[rod].turned}, state.rods[rod].q);
+}
+
+Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where) {
+  return solid::position(where, model.solids[solid].body.tetrahedra, state.solids[solid].x);
+}
+
+std::vector<double> motor_positions(const Model& model, const State& state) {
+  std::vector<double> positions;
+  for (const ActuatorModel& actuator : model.actuators) {
+    const Line& line = actuator.line;
+    if (actuator.tendon) {
+      positions.push_back(actuator.tendon_length -
+                          rod::tendon_length(model.rods[line.rod].rod, *actuator.tendon, state.rods[line.rod].q).value);
+    } else if (line.rod >= 0) {
+      positions.push_back(state.rods[line.rod].q[actuator.unknown - model.rods[line.rod].unknown]);
+    } else {
+      positions.push_back(state.cables[line.cable].z[actuator.unknown - model.cables[line.cable].unknown]);
+    }
+  }
+  return positions;
+}
+
+}  // namespace sinew

@@ -1,0 +1,22 @@
+// Where things are in a state: the one home of what steps, runs and signals ask alike.
+#pragma once
+
+#include "sinew/rod/kinematics.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew {
+
+/// What a rod or cable stands on at the state's time.
+Placement rod_base(const Model& model, const State& state, int rod);
+Placement cable_base(const Model& model, const State& state, int cable);
+
+/// A rod in space.
+rod::Configuration rod_shape(const Model& model, const State& state, int rod);
+
+/// A point of a solid.
+Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where);
+
+/// How far each motor has moved its base, or drawn its tendon [m] or [rad].
+std::vector<double> motor_positions(const Model& model, const State& state);
+
+}  // namespace sinew

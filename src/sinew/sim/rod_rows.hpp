@@ -1,0 +1,51 @@
+// One rod while its equations are put together: loads on its points, and what its rows and shared unknowns do to its
+// strains.
+#pragma once
+
+#include "sinew/sim/reduced.hpp"
+
+namespace sinew {
+
+class RodRows {
+ public:
+  RodRows(const StepContext& context, const State& iterate, int number, Reduced& reduced);
+
+  int number() const { return number_; }
+  const rod::Configuration& shape() const { return shape_; }
+  Reduced& reduced() { return reduced_; }
+  solve::CoupledProblem& problem() { return reduced_.problem; }
+  const StepContext& context() const { return context_; }
+  const State& iterate() const { return iterate_; }
+
+  /// A force on a material point; loads may come in any order.
+  void load(const rod::PointLoad& load) { loads_.push_back(load); }
+  /// An abscissa that is the unknown z, under the force of its load: f . gamma_qs and f . gamma_ss.
+  void slide(double s, const Vec3& force, int unknown);
+  /// Couples a border entry (an unknown z, or row(i)) to the strains and the base by f . dX/dq of the point at
+  /// `offset`.
+  void attach(int border, const rod::CurvePoint& point, const Vec3& offset, const Vec3& f);
+  int row(int number) const { return static_cast<int>(reduced_.problem.B.rows()) + number; }
+
+  /// Adds mass, elasticity, tendons and all the above to the coupled problem.
+  void finish();
+
+ private:
+  void add_masses();
+  void add_forces();
+  void add_tendons(rod::Equations& equations, solve::ChainPart& part);
+  void measure(const rod::Equations& equations);
+
+  const StepContext& context_;
+  const State& iterate_;
+  int number_;
+  Reduced& reduced_;
+  rod::Configuration shape_;
+  std::vector<rod::PointLoad> loads_;
+  std::vector<std::pair<linalg::Attachment, int>> attachments_;
+  std::vector<int> slides_;  ///< unknown of each
+};
+
+/// Rows of ties in which a rod is held, or holds.
+void add_ties(RodRows& rod);
+
+}  // namespace sinew

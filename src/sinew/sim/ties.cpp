@@ -1,0 +1,129 @@
+// Ties: material points of rods held, position and axes, by the ground, frames, solids or other rods.
+//
+// With y the point held and d_a its axes, `length` long (of a body unknowns that rows hold to it, else given), X the
+// rod's point, and e_b the holder's axes as the rod's cross-section carries them:
+//     along a:   c = d_a . (y - X) / length
+//     about a:   c = d_c . R e_b,             (a, b, c) in cyclic order
+// All curvature is between the rod and (y, d): none reaches into the nodes of a solid.
+#include <Eigen/Dense>
+
+#include "sinew/sim/rod_rows.hpp"
+
+namespace sinew {
+
+namespace {
+
+/// Point held and axes, as columns `length` long.
+struct Holder {
+  Vec3 y;
+  rod::Mat3 d;
+};
+
+Holder holder(const StepContext& context, const State& iterate, const TieModel& tie) {
+  if (!tie.body()) {
+    const Placement now = compose(context.moved(tie.frame), tie.holder);
+    return {now.p, tie.length * now.R};
+  }
+  const int at = tie.unknown - context.model.first_followed;
+  Holder own{iterate.followed.segment<3>(at), tie.length * tie.holder.R};
+  if (tie.directors) own.d = Eigen::Map<const rod::Mat3>(iterate.followed.data() + at + 3);
+  return own;
+}
+
+/// The rows of a tie, seen from the rod that is held.
+void add_held(RodRows& rod, const TieModel& tie) {
+  solve::CoupledProblem& problem = rod.problem();
+  const Holder held = holder(rod.context(), rod.iterate(), tie);
+  const rod::CurvePoint point = rod::curve_point(rod.shape(), tie.s);
+  const Vec3 gap = held.y - point.position;
+  const double l = tie.length;
+  int row = tie.row;
+  const auto director = [&](int a) { return tie.unknown + 3 + 3 * a; };
+  const auto count = [&](double c) {
+    problem.c[row] = c;
+    rod.reduced().violation = std::max(rod.reduced().violation, std::abs(c));
+    rod.reduced().scale = std::max(rod.reduced().scale, std::abs(rod.iterate().lambda[row]));
+  };
+  for (const int a : tie.along) {
+    const double lambda = rod.iterate().lambda[row];
+    const Vec3 direction = held.d.col(a) / l;
+    count(direction.dot(gap));
+    rod.load({tie.s, Vec3::Zero(), lambda * direction});
+    rod.attach(rod.row(row), point, Vec3::Zero(), direction);
+    if (tie.body()) {
+      problem.G.block<1, 3>(row, tie.unknown) = -direction.transpose();
+      problem.r.segment<3>(tie.unknown) -= lambda * direction;
+    }
+    if (tie.directors) {
+      const int d = director(a);
+      problem.G.block<1, 3>(row, d) = -gap.transpose() / l;
+      problem.r.segment<3>(d) -= lambda * gap / l;
+      for (int i = 0; i < 3; ++i) {
+        problem.B(tie.unknown + i, d + i) -= lambda / l;
+        problem.B(d + i, tie.unknown + i) -= lambda / l;
+        rod.attach(d + i, point, Vec3::Zero(), lambda / l * Vec3::Unit(i));
+      }
+    }
+    ++row;
+  }
+  for (const int a : tie.about) {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    const double lambda = rod.iterate().lambda[row];
+    const Vec3 offset = l * tie.own_axes.col(b), direction = held.d.col(c) / l;
+    const Vec3 carried = point.R * tie.own_axes.col(b);
+    count(held.d.col(c).dot(carried));
+    // The vector R e_b as a difference of two material points.
+    rod.load({tie.s, offset, -lambda * direction});
+    rod.load({tie.s, Vec3::Zero(), lambda * direction});
+    rod.attach(rod.row(row), point, offset, -direction);
+    rod.attach(rod.row(row), point, Vec3::Zero(), direction);
+    if (tie.directors) {
+      const int d = director(c);
+      problem.G.block<1, 3>(row, d) = -carried.transpose();
+      problem.r.segment<3>(d) -= lambda * carried;
+      for (int i = 0; i < 3; ++i) {
+        rod.attach(d + i, point, offset, -lambda / l * Vec3::Unit(i));
+        rod.attach(d + i, point, Vec3::Zero(), lambda / l * Vec3::Unit(i));
+      }
+    }
+    ++row;
+  }
+}
+
+/// The rows that hold what a tie follows to the rod that holds.
+void add_holding(RodRows& rod, const TieModel& tie) {
+  solve::CoupledProblem& problem = rod.problem();
+  const Holder held = holder(rod.context(), rod.iterate(), tie);
+  const rod::CurvePoint point = rod::curve_point(rod.shape(), tie.other_s);
+  const auto follow = [&](int k, const Vec3& is, const Vec3& followed, const Vec3& offset, bool vector) {
+    const int row = tie.body_row + 3 * k, unknown = tie.unknown + 3 * k;
+    const Vec3 lambda = rod.iterate().lambda.segment<3>(row), gap = is - followed;
+    problem.c.segment<3>(row) = gap;
+    problem.G.block<3, 3>(row, unknown) = rod::Mat3::Identity();
+    problem.r.segment<3>(unknown) += lambda;
+    rod.load({tie.other_s, offset, -lambda});
+    if (vector) rod.load({tie.other_s, Vec3::Zero(), lambda});
+    for (int i = 0; i < 3; ++i) {
+      rod.attach(rod.row(row + i), point, offset, -Vec3::Unit(i));
+      if (vector) rod.attach(rod.row(row + i), point, Vec3::Zero(), Vec3::Unit(i));
+    }
+    rod.reduced().violation = std::max(rod.reduced().violation, gap.norm());
+  };
+  follow(0, point.position + point.R * tie.other_offset, held.y, tie.other_offset, false);
+  if (!tie.directors) return;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 offset = tie.length * tie.other_axes.col(i);
+    follow(1 + i, point.R * offset, held.d.col(i), offset, true);
+  }
+}
+
+}  // namespace
+
+void add_ties(RodRows& rod) {
+  for (const TieModel& tie : rod.context().model.ties) {
+    if (tie.rod == rod.number()) add_held(rod, tie);
+    if (tie.other == rod.number()) add_holding(rod, tie);
+  }
+}
+
+}  // namespace sinew

@@ -1,0 +1,97 @@
+#include "sinew/sim/view.hpp"
+
+#include <algorithm>
+
+#include "sinew/sim/internal.hpp"
+#include "sinew/sim/places.hpp"
+#include "sinew/sim/signals.hpp"
+
+namespace sinew {
+
+namespace {
+
+RodSnapshot sample_cable(const Model& model, const State& state, int number) {
+  const CableModel& cable = model.cables[number];
+  const Eigen::VectorXd& z = state.cables[number].z;
+  const Placement base = cable_base(model, state, number);
+  const int m = cable.cable.points + 1;
+  RodSnapshot sample;
+  sample.name = cable.name;
+  sample.radius.setZero(m);
+  sample.abscissa.setZero(m);
+  sample.points.resize(3, m);
+  sample.tangents.resize(3, m);
+  sample.points.col(0) = base.p - z[0] * base.R.col(0);
+  for (int i = 0; i + 1 < m; ++i) sample.points.col(i + 1) = z.segment<3>(1 + 3 * i);
+  for (int i = 1; i < m; ++i) {
+    const Vec3 d = sample.points.col(i) - sample.points.col(i - 1);
+    sample.abscissa[i] = sample.abscissa[i - 1] + d.norm();
+    sample.tangents.col(i) = d.norm() > 0.0 ? d.normalized() : Vec3(base.R.col(0));
+  }
+  sample.tangents.col(0) = m > 1 ? Vec3(sample.tangents.col(1)) : Vec3(base.R.col(0));
+  return sample;
+}
+
+RodSnapshot sample_rod(const Model& model, const State& state, int number) {
+  const rod::Rod& rod = model.rods[number].rod;
+  const rod::Configuration shape = rod_shape(model, state, number);
+  int degree = 0;
+  for (const rod::Coefficients& Z : shape.strains) degree = std::max(degree, static_cast<int>(Z.cols()) - 1);
+  const int per_section = degree == 0 ? 4 : std::max(8, 64 / rod.count());
+  const int m = rod.count() * per_section + 1;
+  RodSnapshot sample;
+  sample.name = model.rods[number].name;
+  sample.radius.resize(m);
+  sample.abscissa.resize(m);
+  sample.points.resize(3, m);
+  sample.tangents.resize(3, m);
+  sample.von_mises.resize(m);
+  Eigen::MatrixXd strains(6, m), internal(6, m), stresses(3, m);
+  for (int j = 0; j < m; ++j) {
+    const rod::Section& section = rod.sections[std::min(j / per_section, rod.count() - 1)];
+    const double s = j + 1 == m ? rod.length() : section.begin + section.length() * (j % per_section) / per_section;
+    const rod::CurvePoint point = rod::curve_point(shape, s);
+    sample.abscissa[j] = s;
+    sample.radius[j] = rod::radius_at(rod.profile, s);
+    sample.points.col(j) = point.position;
+    sample.tangents.col(j) = point.derivative.normalized();
+    strains.col(j) = rod::strain(rod, state.rods[number].q, s);
+    internal.col(j) = internal_wrench(model, state, number, s);
+    const rod::SectionStress stress = rod::stress_at(rod.profile, s, internal.col(j));
+    stresses.col(j) << stress.axial, stress.bending, stress.torsion;
+    sample.von_mises[j] = stress.von_mises;
+  }
+  static const char* const kInternal[] = {"torsion_moment", "bending_moment_y", "bending_moment_z",
+                                          "axial_force",    "shear_force_y",    "shear_force_z"};
+  static const char* const kStresses[] = {"axial_stress", "bending_stress", "torsion_stress"};
+  for (int i = 0; i < 6; ++i) sample.fields.push_back({rod::kStrainNames[static_cast<std::size_t>(i)], strains.row(i)});
+  for (int i = 0; i < 6; ++i) sample.fields.push_back({kInternal[i], internal.row(i)});
+  for (int i = 0; i < 3; ++i) sample.fields.push_back({kStresses[i], stresses.row(i)});
+  return sample;
+}
+
+}  // namespace
+
+Snapshot snapshot(const Model& model, const State& state, const std::string& status) {
+  Snapshot view;
+  view.time = state.time;
+  view.status = status;
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const SolidModel& solid = model.solids[i];
+    view.solids.push_back({solid.name, solid.body.rest, state.solids[i].x, solid.body.tetrahedra, solid.surface,
+                           solid::von_mises(solid.body, state.solids[i].x)});
+  }
+  for (std::size_t i = 0; i < model.rods.size(); ++i)
+    view.rods.push_back(sample_rod(model, state, static_cast<int>(i)));
+  for (std::size_t i = 0; i < model.cables.size(); ++i)
+    view.rods.push_back(sample_cable(model, state, static_cast<int>(i)));
+  for (std::size_t k = 0; k < model.points.size(); ++k) {
+    if (!state.points[k].on) continue;
+    view.sliding_points.push_back({"", solid_point(model, state, model.points[k].solid, model.points[k].where)});
+  }
+  for (const OutputModel& output : model.outputs)
+    view.outputs.push_back({output.name, output_position(model, state, output)});
+  return view;
+}
+
+}  // namespace sinew
