@@ -47,9 +47,8 @@ Json sizes_json(const Model& model) {
   }
   int unknowns = model.unknowns;
   for (const RodModel& rod : model.rods) {
-    rods[rod.name] = {{"length_m", rod.rod.length()},
-                      {"sections", rod.rod.count()},
-                      {"coordinates", rod.rod.coordinates()}};
+    rods[rod.name] = {
+        {"length_m", rod.rod.length()}, {"sections", rod.rod.count()}, {"coordinates", rod.rod.coordinates()}};
     unknowns += rod.rod.strain_coordinates();
   }
   for (const CableModel& cable : model.cables)
@@ -59,6 +58,17 @@ Json sizes_json(const Model& model) {
           {"sliding_points", model.points.size()},
           {"rows", model.rows},
           {"reduced_unknowns", unknowns}};
+}
+
+/// Load factors at which a static path turned back.
+std::vector<double> limit_points(const io::Recording& recording) {
+  std::vector<double> factors;
+  for (std::size_t i = 1; i + 1 < recording.steps.size(); ++i) {
+    const double before = recording.steps[i - 1].time, at = recording.steps[i].time,
+                 after = recording.steps[i + 1].time;
+    if ((at - before) * (after - at) < 0.0) factors.push_back(at / recording.steps.back().time);
+  }
+  return factors;
 }
 
 /// Views made again from a recording: how the run stopped and what its steps cost stand only in the report of the run
@@ -108,6 +118,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
                        {"largest_residual", residual},
                        {"largest_violation_m", violation},
                        {"gap_at_dropped_points_m", gap}};
+  if (loaded.model.scene.analysis == Analysis::statics) report["summary"]["limit_points"] = limit_points(recording);
   if (!summary.times.empty()) {
     report["summary"]["steps_with_rotated_tangent"] = summary.rotated;
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;
@@ -140,7 +151,8 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
 
   // About 100 frames a run, or one per `view.interval`; the last state always.
   const std::size_t count = recording.steps.size();
-  const double duration = static_cast<double>(grid_steps(model.scene)) * model.scene.time.step;
+  const bool dynamic = model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static;
+  const double duration = run_duration(model.scene);
   const double interval =
       model.scene.view.interval > 0.0 ? model.scene.view.interval : std::max(model.scene.time.step, duration / 100.0);
   if (std::filesystem::exists(folder / "paraview" / "run.pvd"))
@@ -149,9 +161,11 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
   double next = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const double time = recording.steps[i].time;
-    if (time < next - 1e-9 * duration && i + 1 != count) continue;
+    if (dynamic && time < next - 1e-9 * duration && i + 1 != count) continue;
     while (next <= time + 1e-9 * duration) next += interval;
-    series.add(snapshot(model, unpack(model, recording.steps[i].state), recording.steps[i].status));
+    Snapshot frame = snapshot(model, unpack(model, recording.steps[i].state), recording.steps[i].status);
+    if (!dynamic) frame.time = static_cast<double>(i);  // a static path may turn back in time
+    series.add(frame);
   }
   series.finish();
 

@@ -58,7 +58,7 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
 int run_and_record(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
                    io::RecordingWriter writer, bool quiet) {
   const Model& model = loaded.model;
-  const double duration = static_cast<double>(grid_steps(model.scene)) * model.scene.time.step;
+  const double duration = run_duration(model.scene);
   Progress progress("sinew " + loaded.file.path.filename().string(), duration, quiet);
   RunSummary summary;
   summary.warnings = model.warnings;
@@ -183,7 +183,7 @@ int export_run(const std::filesystem::path& folder) {
   }
   RunSummary summary;
   const bool whole =
-      !recording.steps.empty() && recording.steps.back().time >= loaded.model.scene.time.duration * (1.0 - 1e-9);
+      !recording.steps.empty() && recording.steps.back().time >= run_duration(loaded.model.scene) * (1.0 - 1e-9);
   summary.warnings = loaded.model.warnings;
   summary.end = whole ? "done" : "unfinished";
   fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "",

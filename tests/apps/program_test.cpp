@@ -114,7 +114,10 @@ TEST(Run, WritesAllItsFiles) {
   const std::filesystem::path out = scene / "out/deep";
   const std::vector<std::string> rows = lines_of(read_file(out / "signals.csv"));
   ASSERT_EQ(rows.size(), 7u) << "a header, t = 0 and five steps";
-  EXPECT_EQ(rows[0], "time,status,newton,tip.x,tip.y,tip.z,pull.displacement,pull.force");
+  EXPECT_EQ(
+      rows[0],
+      "time,status,newton,tip.x,tip.y,tip.z,pull.displacement,pull.force,energy.kinetic,energy.elastic,energy.weight,"
+      "energy.work,energy.dissipated");
   EXPECT_EQ(rows[1].substr(0, 9), "0,rest,0,");
   for (std::size_t i = 2; i < rows.size(); ++i) EXPECT_NE(rows[i].find(",converged,"), std::string::npos) << rows[i];
   EXPECT_EQ(std::stod(rows.back()), 0.05);

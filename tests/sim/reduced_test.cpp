@@ -84,7 +84,7 @@ void expect_exact_tangent(const Model& model, double size) {
   const Eigen::MatrixXd K = written_out(problem);
   Eigen::MatrixXd D(K.rows(), K.cols());
   for (Eigen::Index j = 0; j < K.cols(); ++j) {
-    const double e = 1e-7;
+    const double e = 1e-6;
     State plus = state, minus = state;
     advance_reduced(context, unit(problem, j), e, plus);
     advance_reduced(context, unit(problem, j), -e, minus);

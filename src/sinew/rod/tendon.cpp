@@ -46,7 +46,10 @@ TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::Ve
     const auto m = static_cast<Eigen::Index>(section.modes.size());
     Coefficients strains = strain_coefficients(section, rod.of_section(q, i));
     strains(3, 0) += 1.0;
-    const GaussRule& rule = gauss_rule(static_cast<int>(strains.cols()) + 4);
+    // A tendon that winds about the rod needs more points the further it turns.
+    const double turn = std::abs(tendon.end_angle - tendon.start_angle) * (to - from) / (tendon.to - tendon.from);
+    const int points = static_cast<int>(strains.cols()) + 4 + static_cast<int>(std::ceil(2.0 * turn));
+    const GaussRule& rule = gauss_rule(std::min(10, points));
     for (std::size_t g = 0; g < rule.node.size(); ++g) {
       const double s = from + (to - from) * rule.node[g], weight = (to - from) * rule.weight[g];
       const auto P = legendre((2.0 * s - section.begin - section.end) / section.length());

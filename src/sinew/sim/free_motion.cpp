@@ -69,8 +69,8 @@ void assemble(const StepContext& context, const SolidModel& model, const solid::
 
 }  // namespace
 
-FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate,
-                       const SolidForces& forces, int number, solid::Tangent kind, StageTimes& times) {
+FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate, int number,
+                       solid::Tangent kind, StageTimes& times) {
   const SolidModel& model = context.model.solids[number];
   Workspace::Solid& memory = workspace.solids[number];
   const auto factor = [&](solid::Tangent tangent) {
@@ -96,8 +96,7 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
     if (all[k].solid == number) free.rows.push_back(static_cast<int>(k));
   }
   const auto columns = static_cast<Eigen::Index>(3 * free.rows.size());
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(forces.r.size(), columns + 1);
-  right.col(columns) = -forces.r;
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3 * model.body.free_nodes, columns);
   for (std::size_t k = 0; k < free.rows.size(); ++k) {
     const SolidRow& row = all[free.rows[k]];
     if (!is_on(iterate, row)) continue;
@@ -107,16 +106,17 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
       for (int i = 0; i < 3; ++i) right(3 * node + i, static_cast<Eigen::Index>(3 * k) + i) = row.where.weights[c];
     }
   }
-  Eigen::MatrixXd half = memory.cholesky.half_solve(right);
-  free.y = half.col(columns);
-  free.X = half.leftCols(columns);
+  free.X = memory.cholesky.half_solve(right);
   return free;
 }
 
+Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b) {
+  return workspace.solids[number].cholesky.half_solve(b);
+}
+
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
-                                  int number, const Eigen::VectorXd& dlambda) {
+                                  Eigen::VectorXd y, int number, const Eigen::VectorXd& dlambda) {
   const solid::Body& body = context.model.solids[number].body;
-  Eigen::VectorXd y = free.y;
   for (std::size_t k = 0; k < free.rows.size(); ++k) {
     y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
          dlambda.segment<3>(context.model.solid_rows[free.rows[k]].row);

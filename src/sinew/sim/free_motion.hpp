@@ -35,21 +35,23 @@ struct SolidForces {
 };
 SolidForces solid_forces(const StepContext& context, const State& iterate, int number);
 
-/// The volume's linear response, A dx = -r + H^T dlambda, half solved:
-///     y = -L^-1 P r,   X = L^-1 P H^T   so that   H dx = X^T y + X^T X dlambda,   dx = P^T L^-T (y + X dlambda).
+/// The volume's linear response, A dx = -r + H^T dlambda, half solved: with X = L^-1 P H^T and y = -L^-1 P r,
+///     H dx = X^T y + X^T X dlambda,   dx = P^T L^-T (y + X dlambda).
 struct FreeMotion {
-  Eigen::VectorXd y;
   Eigen::MatrixXd X;       ///< three columns per solid row of this volume, in the order of `rows`
   std::vector<int> rows;   ///< numbers of the solid rows
   double stiffness = 0.0;  ///< [N/m] largest diagonal entry of A
   bool rotated = false;
   bool ok = false;
 };
-FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate,
-                       const SolidForces& forces, int number, solid::Tangent kind, StageTimes& times);
+FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate, int number,
+                       solid::Tangent kind, StageTimes& times);
+
+/// L^-1 P b with the factor of a volume.
+Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b);
 
 /// Correction: 3 x nodes displacement of the volume (zero at clamped nodes) once the multipliers' increments are known.
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
-                                  int number, const Eigen::VectorXd& dlambda);
+                                  Eigen::VectorXd y, int number, const Eigen::VectorXd& dlambda);
 
 }  // namespace sinew

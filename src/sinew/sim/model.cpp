@@ -154,6 +154,12 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     reject("", "", "the scene has neither solids nor rods",
            "add a `solids:` or `rods:` section; `sinew schema` lists all keys");
   }
+  if (scene.analysis == Analysis::statics && !(scene.time.duration > 0.0))
+    reject("time.duration", text(scene.time.duration) + " s", "must be greater than 0 for `analysis: static`",
+           "loads and motors are taken from the tables at the end of the duration");
+  if (scene.analysis == Analysis::modal && !scene.solids.empty())
+    reject("analysis", "modal", "finds the modes of rods only, and this scene has solids",
+           "remove the solids, or use `analysis: dynamic`");
   for (const auto& [name, solid] : scene.solids) model.solids.push_back(build_solid(scene, name, solid, read_mesh));
   for (const auto& [name, rod] : scene.rods) {
     if (rod.cable == Cable::geometric) {

@@ -136,15 +136,18 @@ void add_compliance(const StepContext& context, const std::vector<FreeMotion>& f
   const std::vector<SolidRow>& rows = context.model.solid_rows;
   for (const FreeMotion& motion : free) {
     const Eigen::MatrixXd W = motion.X.transpose() * motion.X;
-    const Eigen::VectorXd Hdx = motion.X.transpose() * motion.y;
     for (std::size_t a = 0; a < motion.rows.size(); ++a) {
-      const int row = rows[motion.rows[a]].row;
-      const auto ia = static_cast<Eigen::Index>(3 * a);
-      problem.c.segment<3>(row) += Hdx.segment<3>(ia);
       for (std::size_t b = 0; b < motion.rows.size(); ++b)
-        problem.W.block<3, 3>(row, rows[motion.rows[b]].row) += W.block<3, 3>(ia, static_cast<Eigen::Index>(3 * b));
+        problem.W.block<3, 3>(rows[motion.rows[a]].row, rows[motion.rows[b]].row) +=
+            W.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
     }
   }
+}
+
+void add_free_motion(const StepContext& context, const FreeMotion& free, const Eigen::VectorXd& y, Eigen::VectorXd& c) {
+  const Eigen::VectorXd Hdx = free.X.transpose() * y;
+  for (std::size_t a = 0; a < free.rows.size(); ++a)
+    c.segment<3>(context.model.solid_rows[free.rows[a]].row) += Hdx.segment<3>(static_cast<Eigen::Index>(3 * a));
 }
 
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

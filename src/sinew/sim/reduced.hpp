@@ -22,8 +22,11 @@ struct Reduced {
 /// Linearises rods, cables, sliding points, ties, motors and loads at an iterate.
 Reduced linearize(const StepContext& context, const State& iterate);
 
-/// (11): W = H A_x^-1 H^T of all volumes, and their free motion H dx added to c.
+/// (11): adds W = H A_x^-1 H^T of all volumes.
 void add_compliance(const StepContext& context, const std::vector<FreeMotion>& free, solve::CoupledProblem& problem);
+
+/// Adds the free motion H dx = X^T y of a volume to the violations c.
+void add_free_motion(const StepContext& context, const FreeMotion& free, const Eigen::VectorXd& y, Eigen::VectorXd& c);
 
 /// Moves every reduced unknown and multiplier of an iterate by `fraction` of a solution.
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

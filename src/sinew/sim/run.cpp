@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "sinew/sim/modal.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/statics.hpp"
 
 namespace sinew {
 
@@ -25,6 +27,8 @@ Command command_part(const Model& model, const State& state, Command end, double
 }  // namespace
 
 StepResult advance(const Model& model, Workspace& workspace, const State& state) {
+  if (model.scene.analysis == Analysis::statics) return static_step(model, workspace, state);
+  if (model.scene.analysis == Analysis::modal) return modal_step(model, workspace, state);
   const double h = model.scene.time.step;
   const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
   const bool on_grid = state.time == from;
@@ -46,7 +50,17 @@ StepResult advance(const Model& model, Workspace& workspace, const State& state)
   return result;
 }
 
-long grid_steps(const Scene& scene) { return std::lround(std::ceil(scene.time.duration / scene.time.step - 1e-6)); }
+long grid_steps(const Scene& scene) {
+  if (scene.analysis == Analysis::statics) return 1;
+  if (scene.analysis == Analysis::modal) return scene.modes;
+  return std::lround(std::ceil(scene.time.duration / scene.time.step - 1e-6));
+}
+
+double run_duration(const Scene& scene) {
+  if (scene.analysis == Analysis::modal) return scene.modes;
+  if (scene.analysis == Analysis::statics) return scene.time.duration;
+  return static_cast<double>(grid_steps(scene)) * scene.time.step;
+}
 
 RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure) {
   Workspace workspace = make_workspace(model);

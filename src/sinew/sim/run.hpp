@@ -14,8 +14,12 @@ constexpr int kHalvings = 5;
 /// how far is the state, so a run continued from a recorded state makes the same steps. On failure `next` is `state`.
 StepResult advance(const Model& model, Workspace& workspace, const State& state);
 
-/// Steps of the whole grid: duration / step, rounded up to a whole number.
+/// Steps of the whole grid: duration / step, rounded up to a whole number; of statics one, to the end of the path (of
+/// as many accepted steps as it takes); of a modal analysis the number of modes.
 long grid_steps(const Scene& scene);
+
+/// The time at which a run ends [s]; of a modal analysis the number of modes.
+double run_duration(const Scene& scene);
 
 enum class RunEnd { done, stopped, interrupted };
 

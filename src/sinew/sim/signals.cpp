@@ -84,6 +84,10 @@ SignalGroup energy_group() {
 
 std::vector<SignalGroup> signal_groups(const Model& model) {
   std::vector<SignalGroup> groups;
+  if (model.scene.analysis == Analysis::modal) {
+    groups.push_back(
+        {{"mode.frequency"}, [](const Model&, const State& state) { return std::vector<double>{state.frequency}; }});
+  }
   for (const OutputModel& output : model.outputs) groups.push_back(output_group(output));
   groups.push_back(motor_group(model));
   groups.push_back(energy_group());

@@ -16,6 +16,7 @@ struct SignalGroup {
 };
 
 /// In the order of the columns:
+///   mode.frequency [Hz], of a modal analysis only, negative where the equilibrium is unstable;
 ///   <output>.x|y|z [m], or .torsion .. .shear_z [1/m, -] of `strain`, .x|y|z in the axes of the cross-section of
 ///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; <actuator>.displacement [m] and
 ///   .force [N], or .angle [rad] and .torque [N m]; energy.kinetic|elastic|weight|work|dissipated [J]: weight is that

@@ -6,6 +6,18 @@
 
 namespace sinew {
 
+namespace {
+
+/// All that a static path is measured in: nodes, coordinates of rods and the border's unknowns.
+Eigen::Index path_size(const Model& model) {
+  Eigen::Index size = model.unknowns;
+  for (const SolidModel& solid : model.solids) size += 3 * solid.body.nodes();
+  for (const RodModel& rod : model.rods) size += rod.rod.strain_coordinates();
+  return size;
+}
+
+}  // namespace
+
 State initial_state(const Model& model) {
   State state;
   for (const SolidModel& solid : model.solids) {
@@ -44,6 +56,7 @@ State initial_state(const Model& model) {
   }
   state.actuators.assign(model.actuators.size(), 0.0);
   state.loads.assign(model.loads.size(), 0.0);
+  if (model.scene.analysis == Analysis::statics) state.path.direction.setZero(path_size(model));
   return state;
 }
 
@@ -74,6 +87,10 @@ void each_number(StateType& state, const Visit& visit) {
   for (auto& value : state.actuators) visit(value);
   for (auto& value : state.loads) visit(value);
   visit(state.energies.work);
+  visit(state.path.step);
+  visit(state.path.rate);
+  array(state.path.direction);
+  visit(state.frequency);
 }
 
 }  // namespace

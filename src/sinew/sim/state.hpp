@@ -34,9 +34,16 @@ struct Energies {
   double work = 0.0;  ///< by motors and loads
 };
 
+/// Where a static analysis stands on its path (sim/statics.hpp).
+struct PathState {
+  double step = 0.0;          ///< arc length to try next
+  double rate = 0.0;          ///< last change of the load factor over the arc
+  Eigen::VectorXd direction;  ///< and of everything else; empty before the first step and in other analyses
+};
+
 struct State {
   long grid = 0;      ///< steps of the scene's time grid that are behind it
-  double time = 0.0;  ///< [s]
+  double time = 0.0;  ///< [s]; of a modal analysis the number of the mode
   std::vector<SolidState> solids;
   std::vector<RodState> rods;
   std::vector<CableState> cables;
@@ -46,6 +53,8 @@ struct State {
   std::vector<double> actuators;  ///< [N] or [N m] force of each motor
   std::vector<double> loads;      ///< factor of each load
   Energies energies;
+  PathState path;
+  double frequency = 0.0;  ///< [Hz] of the mode that this state shows, in a modal analysis
 };
 
 State initial_state(const Model& model);

@@ -1,0 +1,83 @@
+#include "sinew/sim/linearization.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/clock.hpp"
+
+namespace sinew {
+
+Linearization::Linearization(const StepContext& context, Workspace& workspace, const State& iterate, StageTimes& times)
+    : context_(context), workspace_(workspace), iterate_(iterate), times_(times) {
+  {
+    const Clock clock(times.forces);
+    for (std::size_t i = 0; i < context.model.solids.size(); ++i) {
+      forces_.push_back(solid_forces(context, iterate, static_cast<int>(i)));
+      largest_ = std::max(largest_, forces_.back().largest);
+      scale_ = std::max(scale_, forces_.back().scale);
+    }
+  }
+  const Clock clock(times.rods);
+  reduced_ = linearize(context, iterate);
+  largest_ = std::max(largest_, reduced_.largest);
+  scale_ = std::max(scale_, reduced_.scale);
+}
+
+bool Linearization::finite() const {
+  const solve::CoupledProblem& problem = reduced_.problem;
+  return std::isfinite(largest_) && std::isfinite(reduced_.violation) && problem.r.allFinite() &&
+         problem.c.allFinite() &&
+         std::all_of(forces_.begin(), forces_.end(), [](const SolidForces& f) { return f.r.allFinite(); }) &&
+         std::all_of(problem.chains.begin(), problem.chains.end(),
+                     [](const solve::ChainPart& part) { return part.r.allFinite(); });
+}
+
+bool Linearization::factor(solid::Tangent kind, std::string& failed) {
+  for (std::size_t i = 0; i < context_.model.solids.size(); ++i) {
+    free_.push_back(free_motion(context_, workspace_, iterate_, static_cast<int>(i), kind, times_));
+    if (!free_.back().ok) {
+      failed = "solids." + context_.model.solids[i].name;
+      return false;
+    }
+    rotated_ |= free_.back().rotated;
+    stiffness_ = std::max(stiffness_, free_.back().stiffness);
+  }
+  const Clock clock(times_.solve);
+  add_compliance(context_, free_, reduced_.problem);
+  coupled_.emplace(reduced_.problem);
+  return true;
+}
+
+Increment Linearization::solve(const Linearization& right) {
+  const Clock clock(times_.solve);
+  solve::RightSide side = solve::right_side(right.reduced_.problem);
+  std::vector<Eigen::VectorXd> y;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    y.push_back(half_solved(workspace_, static_cast<int>(i), -right.forces_[i].r));
+    add_free_motion(context_, free_[i], y.back(), side.c);
+  }
+  Increment increment;
+  increment.reduced = coupled_->solve(side);
+  if (!increment.reduced.ok) return increment;
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    increment.dx.push_back(
+        corrected_motion(context_, workspace_, free_[i], y[i], static_cast<int>(i), increment.reduced.dlambda));
+  return increment;
+}
+
+void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate) {
+  for (std::size_t i = 0; i < increment.dx.size(); ++i) iterate.solids[i].x += fraction * increment.dx[i];
+  advance_reduced(context, increment.reduced, fraction, iterate);
+}
+
+double trusted_fraction(const StepContext& context, const Increment& increment) {
+  double fraction = 1.0, farthest = 0.0;
+  for (const Eigen::Matrix3Xd& dx : increment.dx) farthest = std::max(farthest, dx.cwiseAbs().maxCoeff());
+  const double turn = largest_turn(context, increment.reduced);
+  if (turn > 0.8) fraction = 0.8 / turn;
+  if (farthest > 0.3 * context.model.size) fraction = std::min(fraction, 0.3 * context.model.size / farthest);
+  return fraction;
+}
+
+}  // namespace sinew

@@ -1,0 +1,58 @@
+// One linearisation of a whole scene: unbalanced forces, factors, and the correction they ask for. Time steps and
+// statics iterate with it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sinew/sim/reduced.hpp"
+
+namespace sinew {
+
+/// A change of everything a step solves for.
+struct Increment {
+  std::vector<Eigen::Matrix3Xd> dx;  ///< [m] of each solid
+  solve::CoupledSolution reduced;
+};
+
+class Linearization {
+ public:
+  /// Evaluates forces and rows at an iterate. Context, workspace and iterate must outlive it.
+  Linearization(const StepContext& context, Workspace& workspace, const State& iterate, StageTimes& times);
+
+  double largest() const { return largest_; }  ///< [N] largest unbalanced force
+  double scale() const { return scale_; }      ///< [N] largest force that acts anywhere
+  double violation() const { return reduced_.violation; }
+  bool finite() const;
+  const Reduced& reduced() const { return reduced_; }
+
+  /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be.
+  bool factor(solid::Tangent kind, std::string& failed);
+  bool rotated() const { return rotated_; }        ///< the rotated tangent stood in for the exact one
+  double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
+
+  /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
+  Increment solve() { return solve(*this); }
+  Increment solve(const Linearization& right);
+
+ private:
+  const StepContext& context_;
+  Workspace& workspace_;
+  const State& iterate_;
+  StageTimes& times_;
+  std::vector<SolidForces> forces_;
+  Reduced reduced_;
+  double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
+  bool rotated_ = false;
+  std::vector<FreeMotion> free_;
+  std::optional<solve::CoupledFactor> coupled_;
+};
+
+/// Moves an iterate by `fraction` of an increment.
+void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate);
+
+/// How far a linearisation may be trusted: the part of an increment that turns nothing by more than 0.8 rad and moves
+/// nothing by more than 0.3 of the scene's size.
+double trusted_fraction(const StepContext& context, const Increment& increment);
+
+}  // namespace sinew

@@ -1,0 +1,26 @@
+// What happens before the first and after the last iteration, in time steps and statics alike.
+#pragma once
+
+#include "sinew/sim/linearization.hpp"
+
+namespace sinew {
+
+/// First guess of the end of the step: where the start is, carried along by moving frames.
+State first_guess(const StepContext& context);
+
+/// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
+/// that the end has reached again come on.
+void follow_points(const StepContext& context, State& iterate);
+
+/// Velocities, mass points and what else belongs to an accepted step.
+void finish(const StepContext& context, const Reduced& reduced, State& next);
+
+bool finite(const State& state);
+
+/// The first rod that has been drawn past a sliding point, if any.
+const RodModel* exhausted(const Model& model, const State& state);
+
+/// [N] what forces are known to, whatever they add up to: rounding of positions times stiffness.
+double rounding_of(const Model& model, double stiffness);
+
+}  // namespace sinew
