@@ -92,6 +92,25 @@ def tetrahedra():
     return np.round(nodes, 6) + 0.0, cells.reshape(-1, 4)
 
 
+def block():
+    """A block of 60 x 20 x 20 mm in 12 x 4 x 4 cells of six tetrahedra, without Gmsh."""
+    n, size = np.array([12, 4, 4]), np.array([60.0, 20.0, 20.0])
+    k, j, i = np.meshgrid(*(np.arange(m + 1) for m in n[::-1]), indexing="ij")
+    nodes = np.stack([i.ravel(), j.ravel(), k.ravel()], axis=1) / n * size
+    number = lambda i, j, k: (k * (n[1] + 1) + j) * (n[0] + 1) + i
+    cells = []
+    for z in range(n[2]):
+        for y in range(n[1]):
+            for x in range(n[0]):
+                corner = [number(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2 & 1)) for c in range(8)]
+                ring = [1, 3, 2, 6, 4, 5, 1]  # around the diagonal from corner 0 to corner 7
+                for a, b in zip(ring, ring[1:]):
+                    cell = [corner[0], corner[a], corner[b], corner[7]]
+                    edges = nodes[cell[1:]] - nodes[cell[0]]
+                    cells.append(cell if np.linalg.det(edges) > 0 else [cell[0], cell[2], cell[1], cell[3]])
+    return nodes, np.array(cells)
+
+
 def write_vtk(path, title, nodes, cells):
     with open(path, "w", encoding="ascii", newline="\n") as file:
         file.write(f"# vtk DataFile Version 2.0\n{title}\nASCII\nDATASET UNSTRUCTURED_GRID\n")
@@ -128,6 +147,9 @@ def main():
         write_vtk(folder / f"{build.__name__}.vtk", title, nodes, cells)
         report(build.__name__, nodes, cells)
     gmsh.finalize()
+    nodes, cells = block()
+    write_vtk(folder / "block.vtk", "Sinew soft block, mm", nodes, cells)
+    report("block", nodes, cells)
 
 
 if __name__ == "__main__":

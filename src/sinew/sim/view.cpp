@@ -89,8 +89,10 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
     if (!state.points[k].on) continue;
     view.sliding_points.push_back({"", solid_point(model, state, model.points[k].solid, model.points[k].where)});
   }
-  for (const OutputModel& output : model.outputs)
+  for (const OutputModel& output : model.outputs) {
+    if (output.quantity != Quantity::position) continue;
     view.outputs.push_back({output.name, output_position(model, state, output)});
+  }
   return view;
 }
 
