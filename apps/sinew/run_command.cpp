@@ -74,6 +74,7 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   }
   for (const std::string& warning : summary.warnings) fmt::print(stderr, "warning: {}\n", warning);
   State last = start;
+  bool unstable = false;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const RunEnd end = run(
@@ -83,6 +84,7 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
         summary.times.push_back(report.times);
         summary.rotated += report.rotated ? 1 : 0;
         summary.redundant += report.redundant ? 1 : 0;
+        unstable = report.unstable;
         last = state;
         progress.update(state.time, fmt::format("t = {:.3f} s", state.time));
         return !interrupted.load();
@@ -90,7 +92,14 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
       &summary.failure);
   summary.end = end_word(end);
 
-  for (const std::string& warning : warnings_of(model, last)) {
+  std::vector<std::string> warnings = warnings_of(model, last);
+  if (unstable) {
+    warnings.push_back(
+        "the last equilibrium is unstable, a real rod would have buckled; a small side load or shorter steps show "
+        "where "
+        "it goes");
+  }
+  for (const std::string& warning : warnings) {
     summary.warnings.push_back(warning);
     fmt::print(stderr, "warning: {}\n", warning);
   }

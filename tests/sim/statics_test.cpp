@@ -64,7 +64,75 @@ TEST(Statics, DeepArchBucklesAtTheLoadOfDaDeppoAndSchmidt) {
   }
   EXPECT_TRUE(fell) << "no limit point up to " << highest;
   EXPECT_NEAR(highest, 897.0, 0.01 * 897.0);
-  std::printf("limit load %.2f in %d steps\n", highest, steps);
+  RecordProperty("limit_load", std::to_string(highest));
+}
+
+/// A soft cantilever under a large dead tip force, all at once in one quasi-static step.
+Scene loaded(double alpha, Analysis analysis) {  // alpha = P L^2 / EI
+  Scene scene = test::lone_rod(0.0, 20);
+  scene.analysis = analysis;
+  scene.time = {1.0, 1.0};
+  const double stiffness = 10e6 * std::numbers::pi * std::pow(5e-3, 4) / 4;
+  Load tip;
+  tip.rod = "rod";
+  tip.force = Vec3(0, 0, -alpha * stiffness / 0.25);
+  scene.loads.emplace_back("tip", tip);
+  return scene;
+}
+
+TEST(Statics, OneStepPathAndManyStepsEndInTheSameEquilibrium) {
+  for (const double alpha : {0.5, 5.0, 50.0}) {
+    const Model at_once = build(loaded(alpha, Analysis::quasi_static), test::read_block);
+    const Model along = build(loaded(alpha, Analysis::statics), test::read_block);
+    const test::Trace a = test::run_all(at_once), b = test::run_all(along);
+    ASSERT_EQ(a.end, RunEnd::done) << to_string(a.failure.status) << " at alpha = " << alpha;
+    ASSERT_EQ(b.end, RunEnd::done) << to_string(b.failure.status) << " at alpha = " << alpha;
+    EXPECT_GT(b.states.size(), 3u);
+    EXPECT_NEAR(b.states.back().time, 1.0, 1e-15);
+    EXPECT_LT((test::tip(at_once, a.states.back()) - test::tip(along, b.states.back())).norm(), 1e-8) << alpha;
+  }
+}
+
+TEST(Statics, MotorsAndTiesAreFollowed) {
+  // A rod whose base is pushed 20 mm towards its held tip while a small side load chooses the way: it buckles.
+  Scene scene = test::lone_rod(0.0, 20);
+  scene.analysis = Analysis::statics;
+  scene.rods[0].second.strains = {Strain::torsion, Strain::bending_y, Strain::bending_z, Strain::elongation};
+  Tie tip;
+  tip.rod = "rod";
+  scene.couplings.emplace_back(tip);
+  Actuator push;
+  push.rod = "rod";
+  push.axis = 0;
+  push.drive = Table{{0.0}, {0.02}};
+  scene.actuators.emplace_back("push", push);
+  Load side;
+  side.rod = "rod";
+  side.at = 0.25;
+  side.force = Vec3(0, 0, 0.02);
+  const Model perfect = build(scene, test::read_block);
+  const test::Trace straight = test::run_all(perfect);
+  ASSERT_EQ(straight.end, RunEnd::done) << to_string(straight.failure.status);
+  EXPECT_TRUE(straight.reports.back().unstable);  // it stays straight, far beyond the buckling load, and says so
+  scene.loads.emplace_back("side", side);
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  EXPECT_FALSE(trace.reports.back().unstable);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  // Clamped and pinned: P = 20.19 EI / L^2, and a little more as it bows.
+  const double critical = 20.1907 * 10e6 * std::numbers::pi * std::pow(5e-3, 4) / 4 / 0.25;
+  EXPECT_NEAR(trace.states.back().actuators[0], critical, 0.08 * critical);
+}
+
+TEST(Statics, AStateOfAPathIsACheckpoint) {
+  const Model model = build(deep_arch(1200.0, 20, 0), test::read_block);
+  Workspace workspace = make_workspace(model);
+  State state = initial_state(model);
+  for (int i = 0; i < 12; ++i) state = advance(model, workspace, state).next;
+  const State copy = unpack(model, pack(state));
+  const StepResult a = advance(model, workspace, state), b = advance(model, workspace, copy);
+  ASSERT_TRUE(accepted(a.report.status));
+  EXPECT_EQ(pack(a.next), pack(b.next));
 }
 
 }  // namespace

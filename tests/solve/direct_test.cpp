@@ -75,5 +75,73 @@ TEST(Direct, numbers_that_are_not_finite_are_refused) {
 
 TEST(Direct, nothing_to_solve_is_fine) { EXPECT_TRUE(solve_direct(problem(0, 0)).ok); }
 
+/// A problem with two chains, one of them with an unsymmetric matrix, attached to the border in every way there is.
+CoupledProblem chained(bool symmetric) {
+  CoupledProblem p = problem(7, 5);
+  srand(3);
+  for (int n = 0; n < 2; ++n) {
+    ChainPart part;
+    part.chain = linalg::make_chain({3, 2, 3, 3}, symmetric || n == 0);
+    part.chain.T.setRandom();
+    part.chain.V.setRandom();
+    if (!part.chain.symmetric()) part.chain.U.setRandom();
+    for (int k = 0; k < part.chain.links(); ++k) {
+      const Eigen::MatrixXd b = Eigen::MatrixXd::Random(part.chain.size(k), part.chain.size(k));
+      part.chain.block(k) = b + b.transpose() + 8.0 * Eigen::MatrixXd::Identity(b.rows(), b.cols());
+    }
+    part.base = linalg::Matrix6X::Random(6, 2);
+    part.first_base = 2 * n;
+    part.r = Eigen::VectorXd::Random(11);
+    for (const int link : {0, 1, 1, 3}) {
+      part.attachments.push_back({link, linalg::Vec6::Random(), Eigen::VectorXd::Random(part.chain.size(link))});
+      part.at.push_back(4 + static_cast<int>(part.at.size()) + 2 * n);  // unknowns and rows
+    }
+    part.whole = Eigen::MatrixXd::Random(11, 1);
+    part.whole_at = {7 + 2};  // a row
+    p.chains.push_back(part);
+  }
+  return p;
+}
+
+class Chains : public testing::TestWithParam<bool> {};
+
+TEST_P(Chains, eliminated_or_written_out_give_the_same) {
+  const CoupledProblem p = chained(GetParam());
+  const CoupledSolution solution = solve_direct(p);
+  ASSERT_TRUE(solution.ok);
+  const Eigen::MatrixXd K = written_out(p);
+  EXPECT_EQ((K - K.transpose()).norm() < 1e-12, GetParam());
+  Eigen::VectorXd b(K.rows()), y(K.rows());
+  b << -p.r, p.c, -p.chains[0].r, -p.chains[1].r;
+  y << solution.dz, solution.dlambda, solution.dq[0], solution.dq[1];
+  EXPECT_LT((K * y - b).norm(), 1e-11 * b.norm());
+}
+
+TEST_P(Chains, a_chain_that_only_the_rows_hold_joins_the_border) {
+  CoupledProblem p = chained(GetParam());
+  p.chains[1].chain.block(2).setZero();  // no pivot of its own
+  p.chains[1].chain.T.middleCols(5, 3).setZero();
+  const CoupledSolution solution = solve_direct(p);
+  ASSERT_TRUE(solution.ok);
+  const Eigen::MatrixXd K = written_out(p);
+  Eigen::VectorXd b(K.rows()), y(K.rows());
+  b << -p.r, p.c, -p.chains[0].r, -p.chains[1].r;
+  y << solution.dz, solution.dlambda, solution.dq[0], solution.dq[1];
+  EXPECT_LT((K * y - b).norm(), 1e-8 * b.norm() * y.norm());
+}
+
+TEST(Chains, negative_eigenvalues_are_counted_through_the_elimination) {
+  CoupledProblem p = chained(true);
+  for (const double shift : {0.0, 6.0, 12.0}) {
+    CoupledProblem shifted = p;
+    for (int k = 0; k < 4; ++k) shifted.chains[0].chain.block(k).diagonal().array() -= shift;
+    const CoupledFactor factor(shifted);
+    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(written_out(shifted)).eigenvalues();
+    EXPECT_EQ(factor.negative(), (values.array() < 0.0).count()) << shift;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SymmetricOrNot, Chains, testing::Bool());
+
 }  // namespace
 }  // namespace sinew::solve

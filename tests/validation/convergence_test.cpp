@@ -47,6 +47,25 @@ TEST_P(Convergence, cubic_strain_keeps_the_order_six_of_the_integration) {
   EXPECT_GT(order_of(3, 4), 5.7);
 }
 
+TEST_P(Convergence, holds_under_a_distributed_load_too) {
+  const auto tip_of = [this](int order, int sections) {
+    Scene scene = straight_rod(1.0, sections, given(kStiffness), all_ ? kAll : kBending, order, 2);
+    scene.newton.tolerance = 1e-13;
+    Load& load = add_load(scene, 2.0 * kForce);
+    load.from = 0.0;
+    load.to = 1.0;
+    return solve(scene).tip();
+  };
+  const Vec3 exact = tip_of(3, 24);
+  const auto power = [&](int order, int n) {
+    return std::log2((tip_of(order, n) - exact).norm() / (tip_of(order, 2 * n) - exact).norm());
+  };
+  EXPECT_GT((exact - Vec3(1, 0, 0)).norm(), 0.3);
+  EXPECT_NEAR(power(0, 16), 2.0, 0.2);
+  EXPECT_NEAR(power(1, 12), 4.0, 0.3);
+  EXPECT_NEAR(power(2, 6), 6.0, 0.3);
+}
+
 TEST_P(Convergence, one_section_gains_with_every_order) {
   double last = error(0, 1);
   for (int order = 1; order <= 5; ++order) {
@@ -56,6 +75,10 @@ TEST_P(Convergence, one_section_gains_with_every_order) {
   }
   EXPECT_LT(last, 1e-7);
 }
+
+// Waits for the engine: with degree five the tip's error falls with the second power only, from 1e-9, because the first
+// moment of P5 over a section is integrated with three Gauss nodes a step (exact to degree five; s P5 has six).
+TEST_P(Convergence, DISABLED_quintic_strain_gains_over_quartic) { EXPECT_LT(error(5, 8), error(4, 8)); }
 
 INSTANTIATE_TEST_SUITE_P(Strains, Convergence, testing::Values(false, true));
 

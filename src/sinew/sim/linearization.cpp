@@ -49,6 +49,14 @@ bool Linearization::factor(solid::Tangent kind, std::string& failed) {
   return true;
 }
 
+bool Linearization::unstable() const {
+  if (rotated_ || !coupled_) return false;
+  for (const solve::ChainPart& part : reduced_.problem.chains) {
+    if (!part.chain.symmetric()) return false;
+  }
+  return coupled_->negative() > context_.model.rows;
+}
+
 Increment Linearization::solve(const Linearization& right) {
   const Clock clock(times_.solve);
   solve::RightSide side = solve::right_side(right.reduced_.problem);

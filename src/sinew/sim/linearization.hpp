@@ -28,7 +28,10 @@ class Linearization {
 
   /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be.
   bool factor(solid::Tangent kind, std::string& failed);
-  bool rotated() const { return rotated_; }        ///< the rotated tangent stood in for the exact one
+  bool rotated() const { return rotated_; }  ///< the rotated tangent stood in for the exact one
+  /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
+  /// the rotated one stood in.
+  bool unstable() const;
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
 
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.

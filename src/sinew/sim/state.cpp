@@ -98,6 +98,7 @@ void each_number(StateType& state, const Visit& visit) {
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers{static_cast<double>(state.grid)};
   for (const PointState& point : state.points) numbers.push_back(point.on ? 1.0 : 0.0);
+  numbers.push_back(state.path.stable ? 1.0 : 0.0);
   each_number(state, [&numbers](double value) { numbers.push_back(value); });
   return numbers;
 }
@@ -109,6 +110,7 @@ State unpack(const Model& model, const std::vector<double>& numbers) {
   std::size_t at = 0;
   state.grid = static_cast<long>(numbers[at++]);
   for (PointState& point : state.points) point.on = numbers[at++] != 0.0;
+  state.path.stable = numbers[at++] != 0.0;
   each_number(state, [&](double& value) { value = numbers[at++]; });
   return state;
 }

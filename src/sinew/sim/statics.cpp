@@ -13,6 +13,8 @@ namespace sinew {
 namespace {
 
 constexpr double kFirstArc = 0.1, kLongestArc = 0.3, kShortestArc = 1e-7;
+/// Where stability is lost the path may branch, and a long step can miss the branch that a small load would take.
+constexpr double kArcAtBranch = kFirstArc / 64;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 
 /// Everything prescribed at the load factor t.
@@ -105,6 +107,7 @@ struct Corrector {
       report.status = Status::singular;
       if (!here.factor(solid::Tangent::exact, report.detail)) return report;
       report.rotated |= here.rotated();
+      report.unstable = here.unstable();
       stiffness = std::max(stiffness, here.stiffness());
       Increment increment = here.solve();
       if (!increment.reduced.ok) return report;
@@ -139,6 +142,7 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
   if (state.path.step == 0.0) {  // before anything: the equilibrium without loads
     StepResult result = land(model, workspace, state, state, 0.0);
     result.next.path.step = kFirstArc;
+    result.next.path.stable = !result.report.unstable;
     result.next.time = 0.0;
     return result;
   }
@@ -157,13 +161,16 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
   const double way = state.path.rate == 0.0 || state.path.direction.dot(u) + state.path.rate > 0.0 ? 1.0 : -1.0;
   const Corrector corrector{model, workspace, state, way / norm * u, way / norm};
 
+  const auto missed = [&state](const StepReport& made, double arc) {
+    return state.path.stable && made.unstable && arc > kArcAtBranch;
+  };
   for (double arc = std::min(state.path.step, kLongestArc); arc >= kShortestArc; arc *= 0.5) {
     double t = t0 + arc * corrector.rate;
     State iterate = state;
     if (t >= 1.0) {  // land on the end
       advance_by(context, change, 1.0 - t0, iterate);
       StepResult last = land(model, workspace, state, iterate, 1.0);
-      if (accepted(last.report.status)) {
+      if (accepted(last.report.status) && !missed(last.report, arc)) {
         last.next.time = duration;
         last.next.grid = state.grid + 1;
         return last;
@@ -172,7 +179,7 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
     }
     advance_by(context, change, arc * corrector.rate, iterate);
     report = corrector.correct(iterate, t);
-    if (!accepted(report.status)) continue;
+    if (!accepted(report.status) || missed(report, arc)) continue;
     if (const RodModel* rod = exhausted(model, iterate)) {
       report.status = Status::rod_exhausted;
       report.detail = "rods." + rod->name;
@@ -181,6 +188,7 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
     iterate.time = t * duration;
     iterate.path.step =
         std::min(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0), kLongestArc);
+    iterate.path.stable = !report.unstable;
     iterate.path.direction = corrector.direction;
     iterate.path.rate = corrector.rate;
     return {std::move(iterate), report};

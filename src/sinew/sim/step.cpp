@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "sinew/sim/step_ends.hpp"
 
@@ -29,6 +31,42 @@ Workspace make_workspace(const Model& model) {
   return workspace;
 }
 
+namespace {
+
+/// Halves the last increment of a static equilibrium while the unbalanced force grows. Motion of rows is not judged: a
+/// motor that has moved must load the rods before anything can be balanced.
+class LineSearch {
+ public:
+  void take(const State& from, const Increment& increment, double fraction, const Linearization& there) {
+    from_ = from;
+    increment_ = increment;
+    fraction_ = fraction;
+    force_ = there.largest();
+    judged_ = there.violation();
+    halvings_ = 0;
+  }
+  bool too_far(const StepContext& context, const Linearization& here) const {
+    constexpr int kMostHalvings = 4;
+    return context.rate == 0.0 && from_ && judged_ <= 1e-6 * context.model.size && halvings_ < kMostHalvings &&
+           !(here.largest() <= force_) && here.largest() > 1e-6 * here.scale();
+  }
+  State shortened(const StepContext& context) {
+    State state = *from_;
+    fraction_ *= 0.5;
+    ++halvings_;
+    advance_by(context, increment_, fraction_, state);
+    return state;
+  }
+
+ private:
+  std::optional<State> from_;
+  Increment increment_;
+  double fraction_ = 1.0, force_ = 0.0, judged_ = 0.0;
+  int halvings_ = 0;
+};
+
+}  // namespace
+
 StepResult step(const Model& model, Workspace& workspace, const Command& command, const State& state, double h) {
   const StepContext context = make_context(model, state, command, h);
   State iterate = first_guess(context);
@@ -43,8 +81,14 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     return {state, report};
   };
 
+  LineSearch search;
   for (;; ++report.newton) {
-    Linearization here(context, workspace, iterate, report.times);
+    auto evaluated = std::make_unique<Linearization>(context, workspace, iterate, report.times);
+    while (search.too_far(context, *evaluated)) {
+      iterate = search.shortened(context);
+      evaluated = std::make_unique<Linearization>(context, workspace, iterate, report.times);
+    }
+    Linearization& here = *evaluated;
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
     report.violation = here.violation();
     if (!here.finite()) return fail(Status::diverged, "forces are not finite");
@@ -59,11 +103,14 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     if (!here.factor(fixed ? solid::Tangent::rotated : solid::Tangent::exact, failed))
       return fail(Status::singular, failed);
     report.rotated |= here.rotated();
+    if (context.rate == 0.0) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
     const Increment increment = here.solve();
     report.redundant |= increment.reduced.redundant;
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
-    advance_by(context, increment, fixed ? 1.0 : trusted_fraction(context, increment), iterate);
+    const double fraction = fixed ? 1.0 : trusted_fraction(context, increment);
+    if (context.rate == 0.0 && !fixed) search.take(iterate, increment, fraction, here);
+    advance_by(context, increment, fraction, iterate);
   }
 
   if (!finite(iterate)) return fail(Status::diverged, "the new state is not finite");

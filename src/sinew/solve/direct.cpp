@@ -290,6 +290,14 @@ CoupledSolution CoupledFactor::solve(const RightSide& right) {
   }
 }
 
+int CoupledFactor::negative() const {
+  int count = 0;
+  for (const linalg::ChainFactor& factor : factors_) count += factor.negative();
+  if (K_.rows() == 0 || !K_.allFinite()) return count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
+  return count + static_cast<int>((border.eigenvalues().array() < 0.0).count());
+}
+
 CoupledSolution solve_direct(const CoupledProblem& problem) {
   CoupledFactor factor(problem);
   return factor.solve(right_side(problem));

@@ -63,6 +63,10 @@ class CoupledFactor {
   explicit CoupledFactor(const CoupledProblem& problem);
   CoupledSolution solve(const RightSide& right);
 
+  /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
+  /// no more of them than rows. Costs an eigenvalue problem of the border.
+  int negative() const;
+
  private:
   void eliminate_chains();
   void join_chains();
