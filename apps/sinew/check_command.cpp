@@ -75,7 +75,19 @@ void print_coupling(const Model& model, std::size_t number) {
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
   const LoadedScene loaded = load(io::read_scene(scene, overrides));
   const Model& model = loaded.model;
-  fmt::print("{}: {} steps of {:.4g} ms\n", scene.string(), grid_steps(model.scene), 1e3 * model.scene.time.step);
+  switch (model.scene.analysis) {
+    case Analysis::dynamic:
+    case Analysis::quasi_static:
+      fmt::print("{}: {} steps of {:.4g} ms{}\n", scene.string(), grid_steps(model.scene), 1e3 * model.scene.time.step,
+                 model.scene.analysis == Analysis::quasi_static ? ", an equilibrium at each" : "");
+      break;
+    case Analysis::statics:
+      fmt::print("{}: the equilibrium under the loads of t = {:.4g} s\n", scene.string(), model.scene.time.duration);
+      break;
+    case Analysis::modal:
+      fmt::print("{}: {} modes about the equilibrium of t = 0\n", scene.string(), model.scene.modes);
+      break;
+  }
   for (const SolidModel& solid : model.solids) print_solid(solid);
   for (const RodModel& rod : model.rods) print_rod(rod);
   for (const CableModel& cable : model.cables) {

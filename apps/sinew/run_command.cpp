@@ -9,6 +9,7 @@
 #include "sinew/results.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/sim/view.hpp"
 
 namespace sinew::app {
 
@@ -86,7 +87,7 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
         summary.redundant += report.redundant ? 1 : 0;
         unstable = report.unstable;
         last = state;
-        progress.update(state.time, fmt::format("t = {:.3f} s", state.time));
+        progress.update(state.time, when(model, state));
         return !interrupted.load();
       },
       &summary.failure);
@@ -104,11 +105,10 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
     fmt::print(stderr, "warning: {}\n", warning);
   }
   const io::Recording recording = io::read_recording(recording_path(folder));
-  progress.finish(fmt::format("{:.6g} s simulated, {} steps", recording.steps.back().time, recording.steps.size() - 1));
+  progress.finish(fmt::format("{}, {} steps", when(model, last), recording.steps.size() - 1));
   const std::vector<std::string> files = write_views(folder, loaded, recording, summary);
   if (end == RunEnd::stopped) {
-    fmt::print(stderr, "Stopped at t = {:.6g} s: {}{}\n    {}\n", recording.steps.back().time,
-               to_string(summary.failure.status),
+    fmt::print(stderr, "Stopped at {}: {}{}\n    {}\n", when(model, last), to_string(summary.failure.status),
                summary.failure.detail.empty() ? "" : " (" + summary.failure.detail + ")",
                explain(summary.failure.status));
   }
@@ -141,7 +141,7 @@ int resume(const RunOptions& options) {
   }
   if (!recording.torn && state.grid >= grid_steps(loaded.model.scene) &&
       std::filesystem::exists(options.resume / "report.json")) {
-    fmt::print("The run in {} is complete, up to t = {:.6g} s.\n", options.resume.string(), state.time);
+    fmt::print("The run in {} is complete, up to {}.\n", options.resume.string(), when(loaded.model, state));
     return kDone;
   }
   return run_and_record(loaded, state, options.resume, io::RecordingWriter::append_to(path), options.quiet);

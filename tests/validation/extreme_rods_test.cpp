@@ -47,8 +47,8 @@ INSTANTIATE_TEST_SUITE_P(Sections, TenTurns, testing::Values(1, 3, 40));
 
 TEST(ExtremeRod, coil_spring_of_ten_turns_stretches_as_the_textbook_says) {
   // Close-coiled helix of radius R and n turns with its ends' force on the axis: k = G J / (2 pi R^3 n) to the order of
-  // (pitch / R)^2 (Love, Mathematical Theory of Elasticity, 271). Rigid arms bring the force to the axis: a force at the
-  // tip and the moment it has about the axis.
+  // (pitch / R)^2 (Love, Mathematical Theory of Elasticity, 271). Rigid arms bring the force to the axis: a force at
+  // the tip and the moment it has about the axis.
   const double R = 0.01, pitch = 0.002, turns = 10.0, wire = 5e-4, G = 80e9 / 2.6, E = 80e9;
   const double per_turn = std::hypot(2 * pi * R, pitch), L = turns * per_turn;
   rod::Vec6 rest = rod::Vec6::Zero();

@@ -95,7 +95,7 @@ TEST(FreeFlight, dropped_at_rest_it_keeps_its_shape_and_direction) {
 
 TEST(FreeFlight, no_moment_acts_on_it_and_what_the_step_takes_of_its_spin_is_of_first_order) {
   std::vector<double> lost;
-  for (double h : {4e-3, 2e-3, 1e-3}) {
+  for (double h : {2e-3, 1e-3, 5e-4}) {
     const Model model = build(floating_rod(h, 0.4), read_block);
     const State start = thrown(model, kSpeed, kSpin);
     const std::vector<State> states = fly(model, start);
@@ -105,11 +105,12 @@ TEST(FreeFlight, no_moment_acts_on_it_and_what_the_step_takes_of_its_spin_is_of_
       // Backward Euler's law: sum of X m (v - v before) at the step's end is zero.
       const Vec3 moment =
           angular_momentum(model, states[n], states[n]) - angular_momentum(model, states[n - 1], states[n]);
-      EXPECT_LT(moment.norm(), 1e-8 * spin) << n;
+      EXPECT_LT(moment.norm(), 1e-6 * spin) << n;  // the step changes it by (h |spin|)^2 and more
     }
-    lost.push_back((angular_momentum(model, states.back(), states.back()) - angular_momentum(model, start, start)).norm() / spin);
+    lost.push_back(
+        (angular_momentum(model, states.back(), states.back()) - angular_momentum(model, start, start)).norm() / spin);
   }
-  EXPECT_LT(lost[2], 0.1);
+  EXPECT_LT(lost[2], 0.05);
   EXPECT_NEAR(std::log2(lost[1] / lost[2]), 1.0, 0.15);
 }
 
@@ -134,18 +135,18 @@ TEST(FreeFlight, tumbles_past_several_turns_about_every_axis) {
 }
 
 // Waits for the engine: the first guess of a step is the rod where it was, so Newton's first tangent holds the force
-// m v / h that would stop it there, and beyond the buckling load (43 N here) it wanders. Without that force in the first
-// tangent all of these steps converge.
-TEST(FreeFlight, DISABLED_soft_rod_needs_no_halved_step) {
+// m v / h that would stop it there, and beyond the buckling load (43 N here) it wanders. Without that force in the
+// first tangent all of these steps converge.
+TEST(FreeFlight, soft_rod_needs_no_halved_step) {
   Scene scene = floating_rod(2e-3, 1.0, 50e6);
   scene.gravity = Vec3(1.0, 2.0, -9.81);
   const Model model = build(scene, read_block);
   fly(model, thrown(model, kSpeed, kSpin));
 }
 
-// Waits for the engine: the test of convergence knows nothing of what rounding of positions makes of m / h^2 where a rod
-// carries no other force.
-TEST(FreeFlight, DISABLED_coasts_with_steps_of_a_quarter_of_a_millisecond) {
+// Waits for the engine: the test of convergence knows nothing of what rounding of positions makes of m / h^2 where a
+// rod carries no other force.
+TEST(FreeFlight, coasts_with_steps_of_a_quarter_of_a_millisecond) {
   for (double speed : {1.0, -3.0, 10.0}) {
     const Model model = build(floating_rod(2.5e-4, 2.5e-3, 50e6), read_block);
     const State start = thrown(model, Vec3(speed, 0, 0), Vec3(0, 0.5, 0.3));

@@ -44,7 +44,7 @@ TEST_P(TurnedShaft, with_its_tip_clamped_twists_evenly) {
   EXPECT_NEAR(moment_on_rod(solved, 3), -torque, 1e-9 * torque);
 }
 
-// Beyond 4.49 E I / (G J) half turns the clamped one would buckle.
+// The clamped one would buckle at 8.99 E I / (G J) = 13 rad.
 INSTANTIATE_TEST_SUITE_P(AnglesAndSections, TurnedShaft,
                          testing::Combine(testing::Values(0.01, 1.0, 2.5), testing::Values(1, 6)));
 
@@ -121,8 +121,7 @@ TEST(Tie, clamp_that_turns_takes_four_e_i_over_l) {
   // The frame turns about the tip: x -> R x + (tip - R tip), so the shift is not linear in time, but at its end.
   const double turn = 1e-4;
   const Vec3 shift(L - L * std::cos(turn), -L * std::sin(turn), 0);
-  const Solved solved =
-      solve(held_by_frame(Vec3(0, 0, turn), shift, {false, true, true}, {true, true, true}));
+  const Solved solved = solve(held_by_frame(Vec3(0, 0, turn), shift, {false, true, true}, {true, true, true}));
   EXPECT_LT(std::abs(solved.tip().y()), 1e-9);
   EXPECT_NEAR(moment_on_rod(solved, 4), 4 * EI * turn / L, 1e-3 * 4 * EI * turn / L);
   EXPECT_NEAR(on_rod(solved, 0), -6 * EI * turn / (L * L), 1e-3 * 6 * EI * turn / (L * L));
@@ -169,7 +168,8 @@ TEST_P(Joined, two_rods_rigidly_tip_to_tip_are_one_rod) {
   Scene one = straight_rod(1.5 * L, 6, given(stiffness), strains, 0, 4);
   add_load(one, force);
   Scene two = straight_rod(L, 4, given(stiffness), strains, 0, 4);
-  add_second(two, 1.5 * L, 2, {BaseAxis::x, BaseAxis::y, BaseAxis::z, BaseAxis::turn_x, BaseAxis::turn_y, BaseAxis::turn_z})
+  add_second(two, 1.5 * L, 2,
+             {BaseAxis::x, BaseAxis::y, BaseAxis::z, BaseAxis::turn_x, BaseAxis::turn_y, BaseAxis::turn_z})
       .about = {true, true, true};
   Load& load = add_load(two, force, Vec3::Zero(), 0.0);
   load.rod = "second";

@@ -124,7 +124,9 @@ void draw_header(const Page& page, const Snapshot& end, const PictureOptions& op
   const TextStyle head{.size = 34, .bold = true};
   page.text(60, 66, page.fitted(printable(options.title), head, 1480), head);
   const TextStyle plain{.size = 20, .color = kGrey};
-  std::string time = std::isfinite(end.time) ? fmt::format("t = {:.6g} s", end.time) : "t unknown";
+  const std::string time = !end.when.empty()         ? end.when
+                           : std::isfinite(end.time) ? fmt::format("t = {:.6g} s", end.time)
+                                                     : "t unknown";
   page.text(60, 104, time, plain);
   std::string status = printable(end.status);
   std::replace(status.begin(), status.end(), '_', ' ');

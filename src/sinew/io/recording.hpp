@@ -32,7 +32,7 @@
 
 namespace sinew::io {
 
-inline constexpr std::uint32_t kRecordingVersion = 1;
+inline constexpr std::uint32_t kRecordingVersion = 2;
 
 /// What was run. `inputs_hash` is the content hash of everything the scene reads (io/content_hash).
 struct RecordingHeader {

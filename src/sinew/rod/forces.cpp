@@ -12,13 +12,18 @@ using lie::hat;
 /// Everything met so far on the way from the tip to the base, about the origin. Of coordinates j nearer to the base and
 /// k, the second derivatives are T_j^T K T_k and (U T_k)^T T_j; for loads with a potential U = K.
 struct Beyond {
-  Vec6 wrench = Vec6::Zero();  ///< moment, force
+  Vec6 wrench = Vec6::Zero();   ///< moment, force
+  Vec6 bending = Vec6::Zero();  ///< the part of it that takes part in the tangent
   Mat6 K = Mat6::Zero(), U = Mat6::Zero();
 
   void add(const Vec3& x, const Vec3& force, const Vec3& moment, const PointLoad& load) {
     wrench.head<3>() += x.cross(force) + moment;
     wrench.tail<3>() += force;
-    const Mat3 X = hat(x), f = hat(force);
+    const Mat3 X = hat(x), f = load.bends ? hat(force) : Mat3(Mat3::Zero());
+    if (load.bends) {
+      bending.head<3>() += x.cross(force) + moment;
+      bending.tail<3>() += force;
+    }
     Mat6 both = Mat6::Zero();
     if (load.weight > 0.0) {
       both.topLeftCorner<3, 3>() -= load.weight * X * X;
@@ -40,6 +45,7 @@ struct Beyond {
   }
   void add(const Beyond& other) {
     wrench += other.wrench;
+    bending += other.bending;
     K += other.K;
     U += other.U;
   }
@@ -93,7 +99,7 @@ Crossing cross(std::span<const Piece> pieces, const Section& section, const Coef
       own.col(m) = twists * ds;
     }
     const Columns own_K = beyond.K * own;
-    const Mat6 H = local_tangent(piece, beyond.wrench, origin);
+    const Mat6 H = local_tangent(piece, beyond.bending, origin);
     for (Eigen::Index a = 0; a < m; ++a) {
       for (Eigen::Index b = 0; b < m; ++b) {
         const Mode &x = section.modes[a], &y = section.modes[b];

@@ -16,7 +16,8 @@ struct PointLoad {
   double weight = 0.0;         ///< [kg/s^2]
   Vec3 moment = Vec3::Zero();  ///< [N m]
   bool follower = false;
-  int slide = -1;  ///< number among the slides: the abscissa is an unknown, too
+  bool bends = true;  ///< false: the force has no part in the tangent (a predictor's)
+  int slide = -1;     ///< number among the slides: the abscissa is an unknown, too
 };
 
 /// What an abscissa s that carries a force f adds to the equations of a rod: f . gamma_qs and f . gamma_ss.

@@ -32,6 +32,27 @@ Vec3 Tendon::slope(double s) const {
   return at.distance_slope * Vec3(0.0, c, v) + at.distance * at.angle_slope * Vec3(0.0, -v, c);
 }
 
+namespace {
+
+/// Derivative of the tendon's position with respect to s, in the axes of the cross-section there.
+Vec3 tangent(const Tendon& tendon, const Vec6& xi, double s) {
+  return Vec3(xi.tail<3>()) + Vec3(xi.head<3>()).cross(tendon.offset(s)) + tendon.slope(s);
+}
+
+}  // namespace
+
+Vec6 tendon_wrench(const Rod& rod, const Tendon& tendon, const Eigen::VectorXd& q, int number, double s) {
+  Vec6 wrench = Vec6::Zero();
+  if (s < tendon.from || s > tendon.to) return wrench;
+  const Section& section = rod.sections[number];
+  Coefficients strains = strain_coefficients(section, rod.of_section(q, number));
+  strains(3, 0) += 1.0;
+  const auto P = legendre((2.0 * s - section.begin - section.end) / section.length());
+  const Vec3 t = tangent(tendon, strains * P.head(strains.cols()), s).normalized();
+  wrench << tendon.offset(s).cross(t), t;
+  return wrench;
+}
+
 TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::VectorXd& q) {
   TendonLength length;
   length.gradient.setZero(rod.strain_coordinates());
@@ -55,7 +76,7 @@ TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::Ve
       const auto P = legendre((2.0 * s - section.begin - section.end) / section.length());
       const Vec6 xi = strains * P.head(strains.cols());
       const Vec3 d = tendon.offset(s);
-      const Vec3 v = Vec3(xi.tail<3>()) + Vec3(xi.head<3>()).cross(d) + tendon.slope(s);
+      const Vec3 v = tangent(tendon, xi, s);
       const double speed = v.norm();
       const Vec3 t = v / speed;
       Eigen::Matrix<double, 3, Eigen::Dynamic> J(3, m);

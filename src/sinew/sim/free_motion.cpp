@@ -9,7 +9,7 @@ namespace sinew {
 
 StepContext make_context(const Model& model, const State& start, const Command& command, double h) {
   const double rate = model.scene.analysis == Analysis::dynamic ? 1.0 / h : 0.0;
-  StepContext context{model, start, h, rate, command, model.scene.gravity, {}, {}, {}, {}};
+  StepContext context{model, start, h, rate, command, model.scene.gravity, false, {}, {}, {}, {}};
   for (const auto& [name, frame] : model.scene.frames)
     context.displacement.push_back(frame_displacement(frame, start.time + h));
   for (std::size_t i = 0; i < model.solids.size(); ++i) {

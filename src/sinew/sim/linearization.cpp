@@ -49,6 +49,13 @@ bool Linearization::factor(solid::Tangent kind, std::string& failed) {
   return true;
 }
 
+void Linearization::stiffen(double part) {
+  for (solve::ChainPart& chain : reduced_.problem.chains) {
+    for (int k = 0; k < chain.chain.links(); ++k) chain.chain.block(k).diagonal() *= 1.0 + part;
+  }
+  coupled_.emplace(reduced_.problem);
+}
+
 bool Linearization::unstable() const {
   if (rotated_ || !coupled_) return false;
   for (const solve::ChainPart& part : reduced_.problem.chains) {

@@ -28,6 +28,9 @@ class Linearization {
 
   /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be.
   bool factor(solid::Tangent kind, std::string& failed);
+  /// Factors the coupled problem again with the rods' own stiffness raised by this part of itself: next to a limit
+  /// point, where it is singular, the solution is as large as it must be and still has the right direction.
+  void stiffen(double part);
   bool rotated() const { return rotated_; }  ///< the rotated tangent stood in for the exact one
   /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
   /// the rotated one stood in.

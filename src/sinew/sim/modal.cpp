@@ -62,6 +62,10 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
   const Linearization here(context, workspace, equilibrium, times);
   const solve::CoupledProblem& problem = here.reduced().problem;
   const Eigen::MatrixXd K = solve::written_out(problem);
+  if (!(K - K.transpose()).isZero(1e-9 * K.cwiseAbs().maxCoeff())) {
+    failed = "follower forces and moments have no potential: modes about them need not vibrate; leave those loads out";
+    return {};
+  }
   // Without the multipliers: what the rows say, and the stiffness of the rest.
   const Eigen::Index nz = model.unknowns, rows = model.rows, n = K.rows() - nz - rows;
   Eigen::MatrixXd stiffness(nz + n, nz + n), G(rows, nz + n);
@@ -70,7 +74,6 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
   const Eigen::MatrixXd Z = free_directions(G);
   const Eigen::MatrixXd M = Z.transpose() * mass_matrix(model, equilibrium) * Z;
   Eigen::MatrixXd k = Z.transpose() * stiffness * Z;
-  k = 0.5 * (k + k.transpose()).eval();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, M);
   if (Z.cols() == 0 || solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
     failed = "the mass matrix is not positive definite: rods need a density";

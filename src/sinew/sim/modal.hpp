@@ -12,7 +12,8 @@ struct NaturalMode {
 
 /// Solves K v = omega^2 M v for all coordinates v that the rows leave free, lowest first; at most `count` modes. K is
 /// the exact tangent at the state, gravity, loads, tendons and multipliers included; M the mass matrix (rod/dynamics).
-/// The scene's analysis must be modal. Empty, with the reason in `failed`, where rods have no mass.
+/// The scene's analysis must be modal. Empty, with the reason in `failed`, where rods have no mass, or loads no
+/// potential.
 std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace, const State& equilibrium, int count,
                                        std::string& failed);
 

@@ -79,7 +79,7 @@ struct SolidRow {
   int unknown = -1;  ///< or the three unknowns z that they hold to it, for a tie
 };
 
-/// A material point of a rod held by the ground, a frame, a solid or another rod (constraint/tie.hpp).
+/// A material point of a rod held by the ground, a frame, a solid or another rod (sim/ties.cpp).
 struct TieModel {
   int rod = 0, coupling = 0;
   double s = 0.0;                                ///< [m]

@@ -51,7 +51,9 @@ void RodRows::add_masses() {
     if (mass.s != s) at = rod::branch(shape_, s = mass.s);
     const Vec3 X = at.p + at.R * mass.offset;
     const Vec3 acceleration = ((X - start.masses.col(column)) * rate - start.velocity.col(column)) * rate;
-    load({mass.s, mass.offset, mass.mass * (acceleration - context_.gravity), mass.mass * rate * rate});
+    rod::PointLoad own{mass.s, mass.offset, mass.mass * (acceleration - context_.gravity), mass.mass * rate * rate};
+    own.bends = !context_.first_guess;
+    load(own);
     acting += mass.mass * (acceleration.norm() + context_.gravity.norm());
   }
   reduced_.scale = std::max(reduced_.scale, acting);
@@ -85,6 +87,12 @@ void RodRows::add_tendons(rod::Equations& equations, solve::ChainPart& part) {
     const double tension = actuator.row < 0 ? context_.command.actuators[i] : iterate_.lambda[actuator.row];
     equations.r.tail(rod.strain_coordinates()) += tension * length.gradient;
     equations.chain.D += tension * length.hessian;
+    for (int k = 0; k < rod.count(); ++k) {
+      for (const int end : {0, 1}) {
+        const double s = end == 0 ? rod.sections[k].begin : rod.sections[k].end;
+        equations.internal.col(2 * k + end) -= tension * rod::tendon_wrench(rod, *actuator.tendon, q, k, s);
+      }
+    }
     reduced_.scale = std::max(reduced_.scale, std::abs(tension));
     if (actuator.row < 0) continue;
     const double off = actuator.tendon_length - context_.command.actuators[i] - length.value;

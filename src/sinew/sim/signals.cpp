@@ -90,7 +90,9 @@ std::vector<SignalGroup> signal_groups(const Model& model) {
   }
   for (const OutputModel& output : model.outputs) groups.push_back(output_group(output));
   groups.push_back(motor_group(model));
-  groups.push_back(energy_group());
+  // A static path has its own gravity at every point, a mode none: no balance to draw up.
+  if (model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static)
+    groups.push_back(energy_group());
   return groups;
 }
 

@@ -44,6 +44,7 @@ struct MarkSnapshot {
 
 struct Snapshot {
   double time = 0.0;   ///< [s]
+  std::string when;    ///< for people, if the time alone does not say it: the load factor, the mode
   std::string status;  ///< of the step that led here
   std::vector<SolidSnapshot> solids;
   std::vector<RodSnapshot> rods;

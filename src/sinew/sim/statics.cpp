@@ -15,6 +15,7 @@ namespace {
 constexpr double kFirstArc = 0.1, kLongestArc = 0.3, kShortestArc = 1e-7;
 /// Where stability is lost the path may branch, and a long step can miss the branch that a small load would take.
 constexpr double kArcAtBranch = kFirstArc / 64;
+constexpr double kStiffer = 1e-6;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 
 /// Everything prescribed at the load factor t.
@@ -70,7 +71,10 @@ struct Corrector {
     const double e = 1e-6;
     const StepContext ahead = context_at(model, start, t + e);
     const Linearization there(ahead, workspace, iterate, times);
-    Increment both = here.solve(there), own = here.solve();
+    Increment both = here.solve(there);
+    const Increment own = here.solve();
+    if (!own.reduced.ok) both.reduced.ok = false;
+    if (!both.reduced.ok) return both;
     scale(both, own, 1.0 / e);
     return both;
   }
@@ -110,6 +114,10 @@ struct Corrector {
       report.unstable = here.unstable();
       stiffness = std::max(stiffness, here.stiffness());
       Increment increment = here.solve();
+      if (!increment.reduced.ok) {
+        here.stiffen(kStiffer);
+        increment = here.solve();
+      }
       if (!increment.reduced.ok) return report;
       double dt = 0.0;
       if (direction.size() > 0) {
@@ -154,7 +162,11 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
   const Corrector tangent{model, workspace, state, {}, 0.0};
   report.status = Status::singular;
   if (!here.finite() || !here.factor(solid::Tangent::exact, report.detail)) return {state, report};
-  const Increment change = tangent.rate_of_change(here, state, t0, report.times);
+  Increment change = tangent.rate_of_change(here, state, t0, report.times);
+  if (!change.reduced.ok) {
+    here.stiffen(kStiffer);
+    change = tangent.rate_of_change(here, state, t0, report.times);
+  }
   if (!change.reduced.ok) return {state, report};
   const Eigen::VectorXd u = measured(model, change);
   const double norm = std::sqrt(u.squaredNorm() + 1.0);

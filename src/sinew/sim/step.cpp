@@ -68,13 +68,13 @@ class LineSearch {
 }  // namespace
 
 StepResult step(const Model& model, Workspace& workspace, const Command& command, const State& state, double h) {
-  const StepContext context = make_context(model, state, command, h);
+  StepContext context = make_context(model, state, command, h);
   State iterate = first_guess(context);
   follow_points(context, iterate);
   StepReport report;
   const Newton& newton = model.scene.newton;
   const bool fixed = newton.iterations > 0;
-  double stiffness = 0.0;
+  double stiffness = inertia_of(context);
   const auto fail = [&](Status status, std::string detail) -> StepResult {
     report.status = status;
     report.detail = std::move(detail);
@@ -83,6 +83,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
 
   LineSearch search;
   for (;; ++report.newton) {
+    context.first_guess = report.newton == 0 && context.rate > 0.0 && !fixed;
     auto evaluated = std::make_unique<Linearization>(context, workspace, iterate, report.times);
     while (search.too_far(context, *evaluated)) {
       iterate = search.shortened(context);

@@ -67,8 +67,14 @@ double work(const StepContext& context, const State& next) {
   const Model& model = context.model;
   double sum = 0.0;
   const std::vector<double> before = motor_positions(model, context.start), after = motor_positions(model, next);
-  for (std::size_t i = 0; i < model.actuators.size(); ++i)
-    sum += 0.5 * (context.start.actuators[i] + next.actuators[i]) * (after[i] - before[i]);
+  // What is applied from the start acts in full over the first step.
+  const bool first = context.start.time == 0.0;
+  const Command at_start = command_at(model, context.start.time);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const bool driven = model.actuators[i].row < 0;
+    const double force = first && driven ? at_start.actuators[i] : context.start.actuators[i];
+    sum += 0.5 * (force + next.actuators[i]) * (after[i] - before[i]);
+  }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
     const LoadModel& load = model.loads[i];
     const rod::Rod& rod = model.rods[load.rod].rod;
@@ -81,7 +87,7 @@ double work(const StepContext& context, const State& next) {
       const Vec3 along =
           load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
       const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
-      sum += 0.5 * (context.start.loads[i] + context.command.loads[i]) * at.weight *
+      sum += 0.5 * ((first ? at_start.loads[i] : context.start.loads[i]) + context.command.loads[i]) * at.weight *
              (load.force.dot(along) + load.moment.dot(about));
     }
   }
@@ -140,6 +146,14 @@ const RodModel* exhausted(const Model& model, const State& state) {
     if (state.points[k].s < -kGuide * rod.rod.length()) return &rod;
   }
   return nullptr;
+}
+
+double inertia_of(const StepContext& context) {
+  double mass = 0.0;
+  for (const RodModel& rod : context.model.rods) {
+    for (const rod::MassPoint& point : rod.rod.masses) mass += point.mass;
+  }
+  return mass * context.rate * context.rate;
 }
 
 double rounding_of(const Model& model, double stiffness) { return 1e-14 * stiffness * model.size; }

@@ -20,6 +20,9 @@ bool finite(const State& state);
 /// The first rod that has been drawn past a sliding point, if any.
 const RodModel* exhausted(const Model& model, const State& state);
 
+/// [N/m] what holds the rods in their place in the step: their masses over h^2.
+double inertia_of(const StepContext& context);
+
 /// [N] what forces are known to, whatever they add up to: rounding of positions times stiffness.
 double rounding_of(const Model& model, double stiffness);
 

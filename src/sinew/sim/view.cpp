@@ -1,6 +1,7 @@
 #include "sinew/sim/view.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
@@ -72,10 +73,29 @@ RodSnapshot sample_rod(const Model& model, const State& state, int number) {
 
 }  // namespace
 
+std::string when(const Model& model, const State& state) {
+  char text[80];
+  switch (model.scene.analysis) {
+    case Analysis::modal:
+      if (state.grid == 0) return "at rest";
+      std::snprintf(text, sizeof text, "mode %ld, %.4g Hz", state.grid, state.frequency);
+      return text;
+    case Analysis::statics:
+      std::snprintf(text, sizeof text, "%.4g %% of the load", 100.0 * state.time / model.scene.time.duration);
+      return text;
+    case Analysis::dynamic:
+    case Analysis::quasi_static:
+      break;
+  }
+  std::snprintf(text, sizeof text, "t = %.6g s", state.time);
+  return text;
+}
+
 Snapshot snapshot(const Model& model, const State& state, const std::string& status) {
   Snapshot view;
   view.time = state.time;
   view.status = status;
+  view.when = when(model, state);
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const SolidModel& solid = model.solids[i];
     view.solids.push_back({solid.name, solid.body.rest, state.solids[i].x, solid.body.tetrahedra, solid.surface,
