@@ -145,8 +145,8 @@ TEST(Run, ShowsProgressInPlainLines) {
   ASSERT_EQ(done.code, 0) << said(done);
   EXPECT_EQ(done.err.find('\r'), std::string::npos);
   EXPECT_EQ(done.err.find('\033'), std::string::npos);
-  expect_holds(done.err, {" 20 %  t = 0.010 s", " 40 %  t = 0.020 s", " 60 %  t = 0.030 s", " 80 %  t = 0.040 s",
-                          "100 %  t = 0.050 s", "left\n"});
+  expect_holds(done.err, {" 20 %  t = 0.01 s", " 40 %  t = 0.02 s", " 60 %  t = 0.03 s", " 80 %  t = 0.04 s",
+                          "100 %  t = 0.05 s", "left\n"});
 }
 
 TEST(Run, ReportsWhatItDid) {

@@ -6,27 +6,37 @@
 
 namespace sinew::lie {
 
-Mat3 hat(const Vec3& v) {
-  Mat3 h;
-  h << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return h;
-}
-
 namespace {
 
 constexpr std::array<double, 8> kInverseFactorial = {1.0,      1.0,       1.0 / 2,   1.0 / 6,
                                                      1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040};
 
-/// sum_k (-z)^k / (2k + n)!, for z < 9: the terms fall from the first on.
-double stumpff_series(double z, int n) {
-  double term = kInverseFactorial[static_cast<std::size_t>(n)];
-  double sum = term;
-  for (int k = 1; k < 24; ++k) {
-    term *= -z / ((2.0 * k + n) * (2.0 * k + n - 1.0));
-    sum += term;
-    if (std::abs(term) < 1e-18 * std::abs(sum)) break;
+/// Terms that sum_k (-z)^k / (2k + n)! needs, n = 6 and 7, below 1e-18 of it, up to z = 0.25 and up to z = 9.
+constexpr int kFewTerms = 7, kAllTerms = 13;
+
+/// 1 / (2k + n)!
+constexpr std::array<double, kAllTerms> series_coefficients(int n) {
+  std::array<double, kAllTerms> c{};
+  double factorial = 1.0;
+  for (int i = 2; i <= n; ++i) factorial *= i;
+  for (int k = 0; k < kAllTerms; ++k) {
+    c[static_cast<std::size_t>(k)] = 1.0 / factorial;
+    factorial *= (2.0 * k + n + 1.0) * (2.0 * k + n + 2.0);
   }
-  return sum;
+  return c;
+}
+constexpr auto kSeries6 = series_coefficients(6), kSeries7 = series_coefficients(7);
+
+/// The first terms of both series by Horner's rule.
+template <int terms>
+void sum_series(double z, std::array<double, 8>& C) {
+  double six = kSeries6[terms - 1], seven = kSeries7[terms - 1];
+  for (std::size_t k = terms - 1; k-- > 0;) {
+    six = kSeries6[k] - z * six;
+    seven = kSeries7[k] - z * seven;
+  }
+  C[6] = six;
+  C[7] = seven;
 }
 
 }  // namespace
@@ -34,8 +44,7 @@ double stumpff_series(double z, int n) {
 std::array<double, 8> stumpff(double z) {
   std::array<double, 8> C{};
   if (z < 9.0) {
-    C[7] = stumpff_series(z, 7);
-    C[6] = stumpff_series(z, 6);
+    z < 0.25 ? sum_series<kFewTerms>(z, C) : sum_series<kAllTerms>(z, C);
     for (int n = 5; n >= 0; --n) C[n] = kInverseFactorial[n] - z * C[n + 2];  // stable downwards for small z
   } else {
     const double angle = std::sqrt(z);

@@ -19,7 +19,11 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
 /// [v]x with [v]x w = v x w.
-Mat3 hat(const Vec3& v);
+inline Mat3 hat(const Vec3& v) {
+  Mat3 h;
+  h << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return h;
+}
 
 /// C_0 .. C_7 at z >= 0 to rounding accuracy (relative 1e-15, except near the zeros of C_0 and C_1).
 std::array<double, 8> stumpff(double z);

@@ -2,6 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "sinew/linalg/sized.hpp"
 
 namespace sinew::linalg {
 
@@ -87,30 +91,44 @@ Eigen::VectorXd across(const Chain& chain, const std::vector<Attachment>& attach
 
 namespace {
 
-/// Blocks of a link as matrices of fixed size where they are small, so that no loop is left to the run.
+/// Blocks of a link with M coordinates.
 template <int M>
 struct Sized {
   using Wide = Eigen::Matrix<double, 6, M>;
   using Square = Eigen::Matrix<double, M, M>;
+  using Vector = Eigen::Matrix<double, M, 1>;
 };
 
-/// Calls f with the number of coordinates of a link as a constant, -1 (dynamic) beyond six.
-template <class F>
-auto with_size(int m, const F& f) {
-  switch (m) {
-    case 1:
-      return f(std::integral_constant<int, 1>{});
-    case 2:
-      return f(std::integral_constant<int, 2>{});
-    case 3:
-      return f(std::integral_constant<int, 3>{});
-    case 4:
-      return f(std::integral_constant<int, 4>{});
-    case 6:
-      return f(std::integral_constant<int, 6>{});
-    default:
-      return f(std::integral_constant<int, Eigen::Dynamic>{});
+/// The inverse of a symmetric matrix and the number of its negative eigenvalues, by elimination with pivots on the
+/// diagonal, the largest first; false where those do not suffice, as never happens if it is positive definite.
+template <class Square>
+bool invert_symmetric(const Square& S, Square& inverse, int& negative) {
+  using Vector = Eigen::Matrix<double, Square::RowsAtCompileTime, 1>;
+  const Eigen::Index m = S.rows();
+  inverse = -S;  // turns into the inverse row and column by row and column
+  Eigen::Array<bool, Square::RowsAtCompileTime, 1> done(m);
+  done.setConstant(false);
+  for (Eigen::Index step = 0; step < m; ++step) {
+    Eigen::Index k = -1;
+    for (Eigen::Index i = 0; i < m; ++i)
+      if (!done[i] && (k < 0 || std::abs(inverse(i, i)) > std::abs(inverse(k, k)))) k = i;
+    const double pivot = -inverse(k, k);
+    const Vector column = inverse.col(k), scaled = column / pivot;
+    for (Eigen::Index i = 0; i < m; ++i)
+      if (!done[i] && !(0.1 * std::abs(column[i]) <= std::abs(pivot))) return false;
+    if (pivot < 0.0) ++negative;
+    inverse.noalias() += column * scaled.transpose();
+    inverse.col(k) = scaled;
+    inverse.row(k) = scaled.transpose();
+    inverse(k, k) = 1.0 / pivot;
+    done[k] = true;
   }
+  return inverse.allFinite();
+}
+
+int negative_eigenvalues(const Eigen::MatrixXd& S) {
+  return static_cast<int>(
+      (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S, Eigen::EigenvaluesOnly).eigenvalues().array() < 0.0).count());
 }
 
 /// The inverse of a pivot and how many of its eigenvalues are negative (if symmetric); false if singular.
@@ -118,15 +136,12 @@ template <class Square>
 bool invert(const Square& S, bool symmetric, Square& inverse, int& negative) {
   if (!S.allFinite()) return false;
   if (symmetric) {
-    const Eigen::LDLT<Square> ldlt(S);
-    const auto d = ldlt.vectorD();
-    if (ldlt.info() == Eigen::Success && d.minCoeff() > 0.0) {
-      inverse.setIdentity(S.rows(), S.cols());
-      ldlt.solveInPlace(inverse);
-      return inverse.allFinite();
+    int found = 0;
+    if (invert_symmetric(S, inverse, found)) {
+      negative += found;
+      return true;
     }
-    negative += static_cast<int>(
-        (Eigen::SelfAdjointEigenSolver<Square>(S, Eigen::EigenvaluesOnly).eigenvalues().array() < 0.0).count());
+    negative += negative_eigenvalues(S);
   }
   const Eigen::PartialPivLU<Square> lu(S);
   if (!(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > 1e-300)) return false;
@@ -148,19 +163,20 @@ bool ChainFactor::factor_only(const Chain& chain) {
     if (m == 0) continue;
     const bool ok = with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const typename Sized<M>::Wide T = chain.twists(k);
+      const typename Sized<M>::Wide T = chain.T.middleCols<M>(at, m);
       const typename Sized<M>::Wide PT = P * T;
-      const typename Sized<M>::Wide G = PT + chain.wrenches(k);
-      const typename Sized<M>::Square S = chain.block(k) + T.transpose() * PT;
+      const typename Sized<M>::Wide G = PT + chain.V.middleCols<M>(at, m);
+      typename Sized<M>::Square S = chain.D.block<M, M>(0, at, m, m);
+      S.noalias() += T.transpose() * PT;
       typename Sized<M>::Square inverse(m, m);
       if (!invert(S, chain.symmetric(), inverse, negative_)) return false;
       const typename Sized<M>::Wide Y = G * inverse;
       typename Sized<M>::Wide C = G;
-      if (!chain.symmetric()) C = chain.left_wrenches(k) + P.transpose() * T;
+      if (!chain.symmetric()) C = chain.U.middleCols<M>(at, m) + P.transpose() * T;
       P.noalias() -= Y * C.transpose();
-      Y_.middleCols(at, m) = Y;
-      C_.middleCols(at, m) = C;
-      S_.block(0, at, m, m) = inverse;
+      Y_.middleCols<M>(at, m) = Y;
+      C_.middleCols<M>(at, m) = C;
+      S_.block<M, M>(0, at, m, m) = inverse;
       return true;
     });
     if (!ok) return false;
@@ -193,97 +209,169 @@ Eigen::VectorXd ChainFactor::solve(const Eigen::VectorXd& b, const Vec6& tau, Ve
   Vec6 p = Vec6::Zero();
   for (int k = chain.links() - 1; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
-    x.segment(at, m) -= chain.twists(k).transpose() * p;
-    p += Y_.middleCols(at, m) * x.segment(at, m);
+    with_size(m, [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      auto own = x.segment<M>(at, m);
+      own.noalias() -= chain.T.middleCols<M>(at, m).transpose() * p;
+      p.noalias() += Y_.middleCols<M>(at, m) * own;
+    });
   }
   if (base) *base = base_ * tau + p;
   Vec6 twist = tau;
   for (int k = 0; k < chain.links(); ++k) {
     const int at = chain.first[k], m = chain.size(k);
-    x.segment(at, m) = (S_.block(0, at, m, m) * (x.segment(at, m) - C_.middleCols(at, m).transpose() * twist)).eval();
-    twist += chain.twists(k) * x.segment(at, m);
+    with_size(m, [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      auto own = x.segment<M>(at, m);
+      const typename Sized<M>::Vector left = own - C_.middleCols<M>(at, m).transpose() * twist;
+      own.noalias() = S_.block<M, M>(0, at, m, m) * left;
+      twist.noalias() += chain.T.middleCols<M>(at, m) * own;
+    });
   }
   return x;
 }
 
-void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& W,
+namespace {
+
+/// Numbers that are worked on together, one of each of several wrenches: a register of every x86-64 and ARMv8.
+constexpr int kLanes = 2;
+using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
+
+/// As many wrenches side by side.
+struct Wrenches {
+  Lanes of[6] = {};
+
+  Lanes dot(const double* v) const {
+    return v[0] * of[0] + v[1] * of[1] + v[2] * of[2] + v[3] * of[3] + v[4] * of[4] + v[5] * of[5];
+  }
+  void subtract(const double* v, const Lanes& factor) {
+    of[0] -= v[0] * factor;
+    of[1] -= v[1] * factor;
+    of[2] -= v[2] * factor;
+    of[3] -= v[3] * factor;
+    of[4] -= v[4] * factor;
+    of[5] -= v[5] * factor;
+  }
+  Vec6 lane(int i) const {
+    Vec6 one;
+    for (int c = 0; c < 6; ++c) one[c] = of[c][i];
+    return one;
+  }
+  void set_lane(int i, const Vec6& one) {
+    for (int c = 0; c < 6; ++c) of[c][i] = one[c];
+  }
+};
+
+/// Copies the triangle below the diagonal of `from` to above that of `to` (which may be the same), block by block so
+/// that both stay in the cache.
+void mirror(const Eigen::MatrixXd& from, Eigen::MatrixXd& to) {
+  constexpr Eigen::Index kBlock = 16;
+  const Eigen::Index n = from.cols();
+  for (Eigen::Index j = 0; j < n; j += kBlock) {
+    for (Eigen::Index i = j; i < n; i += kBlock) {
+      for (Eigen::Index b = j; b < std::min(j + kBlock, n); ++b) {
+        for (Eigen::Index a = std::max(i, b + 1); a < std::min(i + kBlock, n); ++a) to(b, a) = from(a, b);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& turned_W,
                                  Matrix6X& arriving) const {
   const Chain& chain = *chain_;
   const auto count = static_cast<int>(attachments.size());
-  W.resize(count, count);
+  turned_W.resize(count, count);
   arriving.resize(6, count);
 
-  // Flexibility of the link ends from the base on, and with it the two six-vectors of each attachment.
-  Matrix6X alpha(6, count), beta(6, count);
+  // Flexibility of the link ends from the base on, and with it the two six-vectors of each attachment: what it sees of
+  // a wrench that arrives beyond its link is (alpha + beta) . wrench less what the link itself gives way.
+  Matrix6X alpha(6, count), gamma(6, count);
   Mat6 F = Mat6::Zero();
   int next = 0;
   const int last_link = count > 0 ? attachments.back().link : -1;
   for (int k = 0; k <= last_link; ++k) {
     const int at = chain.first[k], m = chain.size(k);
-    for (; next < count && attachments[next].link == k; ++next) {
-      const Attachment& own = attachments[next];
-      const Eigen::VectorXd left = S_.block(0, at, m, m).transpose() * own.b;
-      alpha.col(next) = F.transpose() * (own.g - C_.middleCols(at, m) * left);
-      beta.col(next) = chain.twists(k) * left;
-    }
     with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const typename Sized<M>::Wide T = chain.twists(k);
-      const typename Sized<M>::Wide TS = T * S_.block(0, at, m, m);
-      const Mat6 left = Mat6::Identity() - TS * C_.middleCols(at, m).transpose();
-      const Mat6 right = Mat6::Identity() - Y_.middleCols(at, m) * T.transpose();
-      const Mat6 moved = left * F;
-      F.noalias() = moved * right + TS * T.transpose();
+      const typename Sized<M>::Wide T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
+      const typename Sized<M>::Wide C = C_.middleCols<M>(at, m);
+      const typename Sized<M>::Square S = S_.block<M, M>(0, at, m, m);
+      for (; next < count && attachments[next].link == k; ++next) {
+        const typename Sized<M>::Vector b = attachments[next].b;
+        const typename Sized<M>::Vector left = S.transpose() * b;
+        alpha.col(next).noalias() = F.transpose() * (attachments[next].g - C * left);
+        const typename Sized<M>::Vector given = left - Y.transpose() * alpha.col(next);
+        gamma.col(next) = alpha.col(next) + T * given;
+      }
+      // F <- (1 - T S C^T) F (1 - Y T^T) + T S T^T
+      const typename Sized<M>::Wide TS = T * S;
+      const Eigen::Matrix<double, M, 6> CF = C.transpose() * F;
+      F.noalias() -= TS * CF;
+      const typename Sized<M>::Wide FY = TS - F * Y;
+      F.noalias() += FY * T.transpose();
     });
   }
 
-  // Wrenches on their way to the base, met by the attachments they pass.
+  // Wrenches on their way to the base, met by the attachments they pass; the last of them in the last lane.
+  const int blocks = (count + kLanes - 1) / kLanes, shift = blocks * kLanes - count;
+  std::vector<Wrenches> moving(static_cast<std::size_t>(blocks));
   int beyond = count;  // attachments of links beyond k: from this number on
-  Matrix6X before;
   for (int k = last_link; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
     int own = beyond;
     while (own > 0 && attachments[own - 1].link == k) --own;
-    auto passing = arriving.rightCols(count - beyond);
-    if (own < beyond) before = passing;
     with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const typename Sized<M>::Wide T = chain.twists(k), Y = Y_.middleCols(at, m);
-      for (int l = beyond; l < count; ++l) {
-        const Eigen::Matrix<double, M, 1> felt = T.transpose() * arriving.col(l);
-        arriving.col(l).noalias() -= Y * felt;
+      const typename Sized<M>::Wide T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
+      for (int block = blocks - 1; (block + 1) * kLanes > beyond + shift; --block) {
+        const Wrenches before = moving[static_cast<std::size_t>(block)];
+        Wrenches after = before;
+        for (int i = own; i < beyond; ++i) {
+          // Lanes before `beyond` are still empty; what they leave in W is written over, or lies above the diagonal.
+          const Lanes seen = before.dot(&gamma(0, i));
+          const int l = block * kLanes - shift;
+          if (l >= 0)
+            std::memcpy(&turned_W(l, i), &seen, sizeof(seen));
+          else
+            for (int lane = -l; lane < kLanes; ++lane) turned_W(l + lane, i) = seen[lane];
+        }
+        for (int c = 0; c < m; ++c) {
+          const Lanes felt = before.dot(&T(0, c));
+          after.subtract(&Y(0, c), felt);
+        }
+        moving[static_cast<std::size_t>(block)] = after;
+      }
+      const typename Sized<M>::Square S = S_.block<M, M>(0, at, m, m);
+      for (int l = own; l < beyond; ++l) {
+        const typename Sized<M>::Vector b = attachments[l].b;
+        const Vec6 arrived = attachments[l].g - Y * b;
+        const typename Sized<M>::Vector right = S * b;
+        moving[static_cast<std::size_t>((l + shift) / kLanes)].set_lane((l + shift) % kLanes, arrived);
+        for (int i = own; i < beyond; ++i) turned_W(l, i) = alpha.col(i).dot(arrived) + attachments[i].b.dot(right);
       }
     });
-    for (int l = own; l < beyond; ++l) {
-      const Attachment& attachment = attachments[l];
-      arriving.col(l) = attachment.g - Y_.middleCols(at, m) * attachment.b;
-    }
-    const int here = beyond - own;
-    if (here == 0) continue;
-    if (beyond < count) {
-      W.block(own, beyond, here, count - beyond).noalias() = alpha.middleCols(own, here).transpose() * passing;
-      W.block(own, beyond, here, count - beyond).noalias() += beta.middleCols(own, here).transpose() * before;
-    }
-    for (int i = own; i < beyond; ++i) {
-      const Eigen::VectorXd left = S_.block(0, at, m, m).transpose() * attachments[i].b;
-      for (int l = own; l < beyond; ++l) W(i, l) = alpha.col(i).dot(arriving.col(l)) + left.dot(attachments[l].b);
-    }
     beyond = own;
   }
+  for (int l = 0; l < count; ++l)
+    arriving.col(l) = moving[static_cast<std::size_t>((l + shift) / kLanes)].lane((l + shift) % kLanes);
 }
 
 ChainFactor::Condensed ChainFactor::condense(const std::vector<Attachment>& attachments) const {
   Condensed condensed;
-  condense_upper(attachments, condensed.W, condensed.arriving);
   if (chain_->symmetric()) {
-    condensed.W.triangularView<Eigen::StrictlyLower>() = condensed.W.transpose();
+    condense_upper(attachments, condensed.W, condensed.arriving);
+    mirror(condensed.W, condensed.W);
     condensed.answering = condensed.arriving;
     return condensed;
   }
-  // Below the diagonal: the upper part of the transposed matrix.
-  Eigen::MatrixXd below;
-  turned_->condense_upper(attachments, below, condensed.answering);
-  condensed.W.triangularView<Eigen::StrictlyLower>() = below.transpose();
+  // Below the diagonal: the upper part of the transposed matrix, turned.
+  Eigen::MatrixXd above;
+  condense_upper(attachments, above, condensed.arriving);
+  turned_->condense_upper(attachments, condensed.W, condensed.answering);
+  condensed.W.diagonal() = above.diagonal();
+  mirror(above, condensed.W);
   return condensed;
 }
 

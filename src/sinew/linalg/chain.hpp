@@ -88,7 +88,8 @@ class ChainFactor {
 
  private:
   bool factor_only(const Chain& chain);
-  void condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& W, Matrix6X& arriving) const;
+  /// The upper triangle of W, turned: below the diagonal of `turned_W`. Above stands anything.
+  void condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& turned_W, Matrix6X& arriving) const;
 
   const Chain* chain_ = nullptr;
   /// Of an unsymmetric matrix its transposed, in which U and V change places.

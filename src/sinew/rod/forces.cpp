@@ -3,127 +3,315 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "sinew/linalg/sized.hpp"
+
 namespace sinew::rod {
 
 namespace {
 
 using lie::hat;
 
-/// Everything met so far on the way from the tip to the base, about the origin. Of coordinates j nearer to the base and
-/// k, the second derivatives are T_j^T K T_k and (U T_k)^T T_j; for loads with a potential U = K.
-struct Beyond {
-  Vec6 wrench = Vec6::Zero();   ///< moment, force
-  Vec6 bending = Vec6::Zero();  ///< the part of it that takes part in the tangent
-  Mat6 K = Mat6::Zero(), U = Mat6::Zero();
-
-  void add(const Vec3& x, const Vec3& force, const Vec3& moment, const PointLoad& load) {
-    wrench.head<3>() += x.cross(force) + moment;
-    wrench.tail<3>() += force;
-    const Mat3 X = hat(x), f = load.bends ? hat(force) : Mat3(Mat3::Zero());
-    if (load.bends) {
-      bending.head<3>() += x.cross(force) + moment;
-      bending.tail<3>() += force;
+/// Loads on what lies beyond, summed about the origin: what any number of them does is told by these few sums.
+class Beyond {
+ public:
+  void add(const Vec3& x, const PointLoad& load) {
+    const Vec3 moment = x.cross(load.force) + load.moment;
+    wrench_.head<3>() += moment;
+    wrench_.tail<3>() += load.force;
+    const Vec3 weighted = load.weight * x;
+    weight_ += load.weight;
+    lever_ += weighted;
+    if (!load.bends) {
+      outside_.head<3>() += moment;
+      outside_.tail<3>() += load.force;
     }
-    Mat6 both = Mat6::Zero();
-    if (load.weight > 0.0) {
-      both.topLeftCorner<3, 3>() -= load.weight * X * X;
-      both.topRightCorner<3, 3>() = load.weight * X;
-      both.bottomLeftCorner<3, 3>() = -load.weight * X;
-      both.bottomRightCorner<3, 3>().diagonal().setConstant(load.weight);
+    if (load.follower) {
+      second_ += x * weighted.transpose();
+      carried_.head<3>() += moment;
+      carried_.tail<3>() += load.force;
+    } else {
+      second_ += x * (load.bends ? Vec3(weighted - load.force) : weighted).transpose();
+      moment_ += load.moment;
     }
-    if (!load.follower) {  // the point moves under a force that stays: (v + omega x x) x f
-      both.topLeftCorner<3, 3>() += f * X;
-      both.topRightCorner<3, 3>() -= f;
-      U.topLeftCorner<3, 3>() -= hat(moment);  // a later coordinate's axis turns under a moment that stays
-    } else {                                   // the wrench is carried along; what comes later does not change it
-      K.topLeftCorner<3, 3>() += f * X - X * f - hat(moment);
-      K.topRightCorner<3, 3>() -= f;
-      K.bottomLeftCorner<3, 3>() -= f;
-    }
-    K += both;
-    U += both;
   }
   void add(const Beyond& other) {
-    wrench += other.wrench;
-    bending += other.bending;
-    K += other.K;
-    U += other.U;
+    wrench_ += other.wrench_;
+    weight_ += other.weight_;
+    lever_ += other.lever_;
+    second_ += other.second_;
+    carried_ += other.carried_;
+    outside_ += other.outside_;
+    moment_ += other.moment_;
   }
+
+  /// Moment, force.
+  const Vec6& wrench() const { return wrench_; }
+  /// The part of it that takes part in the tangent.
+  Vec6 bending() const { return wrench_ - outside_; }
+
+  /// Of coordinates j nearer to the base and k, the second derivatives are T_j^T K T_k and (U T_k)^T T_j; for loads
+  /// with a potential U = K. Weights answer the acceleration v + omega x X; a force that stays is moved by it; a wrench
+  /// that is carried along does not change with what comes later, and a moment that stays has a later axis turn under
+  /// it.
+  Mat6 K() const { return assembled(Vec3(carried_.head<3>()), bending().tail<3>(), carried_.tail<3>()); }
+  Mat6 U() const { return assembled(moment_, bending().tail<3>() - carried_.tail<3>(), Vec3::Zero()); }
+
+ private:
+  Mat6 assembled(const Vec3& moment, const Vec3& moved, const Vec3& carried) const {
+    Mat6 K;
+    K.topLeftCorner<3, 3>() = -second_ - hat(moment);
+    K.topLeftCorner<3, 3>().diagonal().array() += second_.trace();
+    K.topRightCorner<3, 3>() = hat(lever_ - moved);
+    K.bottomLeftCorner<3, 3>() = -hat(lever_ + carried);
+    K.bottomRightCorner<3, 3>() = weight_ * Mat3::Identity();
+    return K;
+  }
+
+  Vec6 wrench_ = Vec6::Zero();
+  double weight_ = 0.0;          ///< sum w
+  Vec3 lever_ = Vec3::Zero();    ///< sum w x
+  Mat3 second_ = Mat3::Zero();   ///< sum x (w x - f)^T, f the forces that stay
+  Vec6 carried_ = Vec6::Zero();  ///< the wrench of followers
+  Vec6 outside_ = Vec6::Zero();  ///< the wrench of loads that stay out of the tangent
+  Vec3 moment_ = Vec3::Zero();   ///< sum of the moments that stay
 };
 
-constexpr int kColumns = 6 * (kHighestDegree + 1) + 1;
-using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kColumns>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kColumns, kColumns>;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kColumns, 1>;
+/// Matrices of a section with M coordinates.
+constexpr int kColumns = 6 * (kHighestDegree + 1);
+template <int M>
+constexpr int kMost = M == Eigen::Dynamic ? kColumns : M;
+template <int M>
+using Columns = Eigen::Matrix<double, 6, M, 0, 6, kMost<M>>;
+template <int M>
+using Square = Eigen::Matrix<double, M, M, 0, kMost<M>, kMost<M>>;
+template <int M>
+using Vector = Eigen::Matrix<double, M, 1, 0, kMost<M>, 1>;
 
-/// A chain of exponentials as its section's coordinates (and, last, the abscissa of its end) see it.
+/// What a chain of exponentials does to the loads beyond it, as its section's coordinates see it.
+template <int M>
 struct Crossing {
-  Columns T;        ///< twists of all its coordinates
-  Vector gradient;  ///< T^T wrench
-  Square tangent;   ///< of the coordinates among themselves
+  explicit Crossing(Eigen::Index m)
+      : KT(Columns<M>::Zero(6, m)),
+        UT(Columns<M>::Zero(6, m)),
+        gradient(Vector<M>::Zero(m)),
+        tangent(Square<M>::Zero(m, m)),
+        slope(Vector<M>::Zero(m)) {}
+  Columns<M> KT, UT;   ///< with T the twists of the coordinates; UT only where it is not KT
+  Vector<M> gradient;  ///< T^T wrench
+  Square<M> tangent;   ///< of the coordinates among themselves
+  // Of a slide: the abscissa of the chain's end is one more coordinate.
+  Vec6 Kt = Vec6::Zero(), Ut = Vec6::Zero();  ///< with t its twist
+  Vector<M> slope;                            ///< tangent between it and the coordinates
+  double second = 0.0;                        ///< its own
 };
 
-/// d(piece twists^T wrench) for a wrench that stays, by the six numbers of the piece.
-Mat6 local_tangent(const Piece& piece, const Vec6& wrench, const Vec3& origin) {
-  const Vec3 force = piece.R.transpose() * wrench.tail<3>();
-  const Vec3 moment = piece.R.transpose() * (wrench.head<3>() - (piece.end() - origin).cross(Vec3(wrench.tail<3>())));
-  const Mat3 V = piece.tangent().matrix();
-  const Mat3 mixed = piece.tangent().transposed_gradient(force);
-  const Mat3 arm = V.transpose() * hat(force);  // the moment about the end changes as the end moves
+/// The twists of a piece and what is used twice of them.
+struct PieceMotion {
+  PieceMotion(const Piece& piece, const Vec3& origin)
+      : turn(piece.R * piece.tangent().matrix()), move(piece.R * piece.tangent().gradient(piece.rho)) {
+    twists.topLeftCorner<3, 3>() = turn;
+    twists.topRightCorner<3, 3>().setZero();
+    twists.bottomLeftCorner<3, 3>() = move + hat(piece.end() - origin) * turn;
+    twists.bottomRightCorner<3, 3>() = turn;
+  }
+  Mat3 turn, move;  ///< of its end by phi
+  Mat6 twists;
+};
+
+/// d(piece twists^T wrench) for a wrench that stays, by the six numbers of the piece; without `stretches` only by the
+/// first three of them.
+Mat6 local_tangent(const Piece& piece, const PieceMotion& motion, const Vec6& wrench, const Vec3& origin,
+                   bool stretches) {
+  const Vec3 world = wrench.tail<3>();
+  const Vec3 force = piece.R.transpose() * world;
+  const Vec3 moment = piece.R.transpose() * (wrench.head<3>() - (piece.end() - origin).cross(world));
+  const Mat3 arm = motion.turn.transpose() * hat(world);  // the moment about the end changes as the end moves
   Mat6 H;
   H.topLeftCorner<3, 3>() = piece.tangent().transposed_gradient(moment) +
-                            piece.tangent().hessian(piece.rho * force.transpose()) +
-                            arm * piece.tangent().gradient(piece.rho);
-  H.topRightCorner<3, 3>() = mixed.transpose() + arm * V;
+                            piece.tangent().hessian(piece.rho * force.transpose()) + arm * motion.move;
+  if (!stretches) return H;
+  const Mat3 mixed = piece.tangent().transposed_gradient(force);
+  H.topRightCorner<3, 3>() = mixed.transpose() + arm * motion.turn;
   H.bottomLeftCorner<3, 3>() = mixed;
   H.bottomRightCorner<3, 3>().setZero();
   return H;
 }
 
-/// With `slide` the abscissa is one more coordinate of the last column, through the weights' derivatives.
-Crossing cross(std::span<const Piece> pieces, const Section& section, const Coefficients& strains, const Vec3& origin,
-               const Beyond& beyond, const Weights& weights, const PartialWeights* slide) {
-  const auto m = static_cast<Eigen::Index>(section.modes.size());
-  const Eigen::Index n = slide ? m + 1 : m;
-  Crossing crossing{Columns::Zero(6, n), Vector::Zero(n), Square::Zero(n, n)};
-  Columns later_K = Columns::Zero(6, n), later_U = Columns::Zero(6, n);
+bool stretches(const Section& section) {
+  return std::any_of(section.modes.begin(), section.modes.end(), [](const Mode& mode) { return mode.strain >= 3; });
+}
+
+/// Walks the rod from the tip to the base with the sums of all loads met.
+class Walk {
+ public:
+  Walk(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations)
+      : shape_(shape),
+        rod_(*shape.rod),
+        loads_(loads),
+        equations_(equations),
+        symmetric_(equations.chain.symmetric()),
+        left_(loads.size()) {}
+
+  void run() {
+    for (int i = rod_.count() - 1; i >= 0; --i) {
+      internal(i, 1, shape_.R[i + 1], shape_.p[i + 1]);
+      linalg::with_size(rod_.first[i + 1] - rod_.first[i], [&](auto size) { pass_section<decltype(size)::value>(i); });
+      internal(i, 0, shape_.R[i], shape_.p[i]);
+    }
+    add_base();
+  }
+
+ private:
+  void internal(int i, int column, const Mat3& R, const Vec3& p);
+  template <int M>
+  void pass_section(int i);
+  template <int M>
+  void meet_loads(int i, int k, bool all);
+  template <int M>
+  Crossing<M> cross(std::span<const Piece> pieces, int i, const Beyond& beyond, const Weights& weights,
+                    const PartialWeights* slide) const;
+  template <int M>
+  void add(int i, int k, const Crossing<M>& crossing);
+  void add_base();
+
+  const Configuration& shape_;
+  const Rod& rod_;
+  std::span<const PointLoad> loads_;
+  Equations& equations_;
+  bool symmetric_;
+  bool stretches_ = false;  ///< the section's coordinates do
+  Beyond beyond_;
+  std::size_t left_;  ///< loads not yet met
+  Branch branch_;     ///< to the loads at hand
+};
+
+void Walk::internal(int i, int column, const Mat3& R, const Vec3& p) {
+  const Vec3 force = beyond_.wrench().tail<3>();
+  const Vec3 moment = beyond_.wrench().head<3>() - (p - shape_.origin).cross(force);
+  auto own = equations_.internal.col(2 * i + column);
+  own.head<3>().noalias() = -(R.transpose() * moment);
+  own.tail<3>().noalias() = -(R.transpose() * force);
+}
+
+template <int M>
+void Walk::pass_section(int i) {
+  const Section& section = rod_.sections[i];
+  stretches_ = stretches(section);
+  for (int k = shape_.first_step[i + 1] - 1; k >= shape_.first_step[i]; --k) {
+    const Weights& weights = section.steps[static_cast<std::size_t>(k - shape_.first_step[i])].weights;
+    const std::span<const Piece> whole(&shape_.pieces[static_cast<std::size_t>(shape_.steps[k].piece)],
+                                       static_cast<std::size_t>(weights.rows()));
+    add(i, k, cross<M>(whole, i, beyond_, weights, nullptr));
+    meet_loads<M>(i, k, i == 0 && k == 0);
+  }
+}
+
+/// Loads that lie in a step, or all that are left.
+template <int M>
+void Walk::meet_loads(int i, int k, bool all) {
+  const Section& section = rod_.sections[i];
+  const double begin = section.steps[static_cast<std::size_t>(k - shape_.first_step[i])].begin;
+  while (left_ > 0 && (loads_[left_ - 1].s >= begin || all)) {
+    // All loads at one abscissa together.
+    const double s = loads_[left_ - 1].s;
+    branch_in(shape_, i, k, s, branch_);
+    Beyond here;
+    const bool slides = loads_[left_ - 1].slide >= 0;
+    for (std::size_t number = 0; left_ > 0 && loads_[left_ - 1].s == s; --left_, ++number) {
+      const PointLoad& load = loads_[left_ - 1];
+      if ((load.slide >= 0) != slides || (slides && number > 0)) break;  // each slide by itself
+      here.add(branch_.p + branch_.R * load.offset - shape_.origin, load);
+    }
+    const PartialWeights& weights = branch_.weights;
+    const Crossing<M> crossing = cross<M>(branch_.pieces, i, here, weights.value, slides ? &weights : nullptr);
+    add(i, k, crossing);
+    if (slides) {
+      Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
+      slide.attachment.link = i;
+      slide.attachment.g = crossing.Kt;
+      slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
+      slide.second = crossing.second;
+    }
+    beyond_.add(here);
+  }
+}
+
+/// With `slide` the abscissa is one more coordinate, through the weights' derivatives.
+template <int M>
+Crossing<M> Walk::cross(std::span<const Piece> pieces, int i, const Beyond& beyond, const Weights& weights,
+                        const PartialWeights* slide) const {
+  const std::vector<Mode>& modes = rod_.sections[i].modes;
+  const Coefficients& strains = shape_.strains[i];
+  const auto m = static_cast<Eigen::Index>(modes.size());
+  const Mat6 K = beyond.K();
+  Mat6 U;
+  if (!symmetric_) U = beyond.U();
+  Crossing<M> crossing(m);
+  // From the last piece to the first; KT, UT, Kt and Ut hold those of the later ones.
   for (auto j = static_cast<Eigen::Index>(pieces.size()) - 1; j >= 0; --j) {
     const Piece& piece = pieces[static_cast<std::size_t>(j)];
-    const Mat6 twists = piece_twists(piece, origin);
-    Columns own(6, n);  // by the coordinates
-    for (Eigen::Index c = 0; c < m; ++c)
-      own.col(c) = weights(j, section.modes[c].degree) * twists.col(section.modes[c].strain);
-    Vec6 ds = Vec6::Zero();
-    if (slide) {
-      ds = strains * slide->first.row(j).head(strains.cols()).transpose();
-      own.col(m) = twists * ds;
-    }
-    const Columns own_K = beyond.K * own;
-    const Mat6 H = local_tangent(piece, beyond.bending, origin);
+    const PieceMotion motion(piece, shape_.origin);
+    const Mat6 H = local_tangent(piece, motion, beyond.bending(), shape_.origin, stretches_ || slide);
+    Columns<M> own(6, m);  // twists by the coordinates
     for (Eigen::Index a = 0; a < m; ++a) {
-      for (Eigen::Index b = 0; b < m; ++b) {
-        const Mode &x = section.modes[a], &y = section.modes[b];
-        crossing.tangent(a, b) += weights(j, x.degree) * weights(j, y.degree) * H(x.strain, y.strain);
-      }
+      const double weight = weights(j, modes[a].degree);
+      own.col(a) = weight * motion.twists.col(modes[a].strain);
+      for (Eigen::Index b = 0; b < m; ++b)
+        crossing.tangent(a, b) += weight * weights(j, modes[b].degree) * H(modes[a].strain, modes[b].strain);
     }
+    const Columns<M>& later_U = symmetric_ ? crossing.KT : crossing.UT;
     if (slide) {
-      const Vec6 Hs = H * ds, sH = H.transpose() * ds, force = twists.transpose() * beyond.wrench;
-      for (Eigen::Index a = 0; a < m; ++a) {
-        const Mode& x = section.modes[a];
-        const double change = slide->first(j, x.degree) * force[x.strain];
-        crossing.tangent(a, m) += weights(j, x.degree) * Hs[x.strain] + change;
-        crossing.tangent(m, a) += weights(j, x.degree) * sH[x.strain] + change;
-      }
+      const Vec6 ds = strains * slide->first.row(j).head(strains.cols()).transpose();
       const Vec6 dds = strains * slide->second.row(j).head(strains.cols()).transpose();
-      crossing.tangent(m, m) += ds.dot(Hs) + force.dot(dds);
+      const Vec6 t = motion.twists * ds, Hs = H * ds, force = motion.twists.transpose() * beyond.wrench();
+      crossing.second += ds.dot(Hs) + force.dot(dds) + crossing.Ut.dot(t);
+      crossing.Kt += K * t;
+      crossing.Ut += (symmetric_ ? K : U) * t;
+      crossing.second += t.dot(crossing.Kt);
+      crossing.slope += own.transpose() * crossing.Kt + later_U.transpose() * t;
+      for (Eigen::Index a = 0; a < m; ++a) {
+        const Mode& mode = modes[a];
+        crossing.slope[a] +=
+            weights(j, mode.degree) * Hs[mode.strain] + slide->first(j, mode.degree) * force[mode.strain];
+      }
     }
-    crossing.tangent += own.transpose() * (own_K + later_K) + later_U.transpose() * own;
-    crossing.gradient += own.transpose() * beyond.wrench;
-    crossing.T += own;
-    later_K += own_K;
-    later_U += beyond.U * own;
+    if (pieces.size() > 1) crossing.tangent.noalias() += later_U.transpose() * own;
+    crossing.KT.noalias() += K * own;
+    if (!symmetric_) crossing.UT.noalias() += U * own;
+    crossing.tangent.noalias() += own.transpose() * crossing.KT;
+    crossing.gradient.noalias() += own.transpose() * beyond.wrench();
   }
   return crossing;
+}
+
+/// What exponentials do to the loads beyond them, alone and together with the steps of the same section before them;
+/// what those do alone follows when their turn comes.
+template <int M>
+void Walk::add(int i, int k, const Crossing<M>& crossing) {
+  linalg::Chain& chain = equations_.chain;
+  const Eigen::Index at = rod_.first[i], m = crossing.gradient.size();
+  auto D = chain.D.block<M, M>(0, at, m, m);
+  D += crossing.tangent;
+  equations_.r.segment<M>(rod_.base_coordinates() + at, m) += crossing.gradient;
+  chain.V.middleCols<M>(at, m) += crossing.KT;
+  if (!symmetric_) chain.U.middleCols<M>(at, m) += crossing.UT;
+  if (k == shape_.first_step[i]) return;
+  const Columns<M> before = shape_.steps[k].before;
+  D.noalias() += before.transpose() * crossing.KT;
+  D.noalias() += (symmetric_ ? crossing.KT : crossing.UT).transpose() * before;
+}
+
+/// The base's own coordinates: each turns and moves all that come after it.
+void Walk::add_base() {
+  const auto nb = shape_.base.cols();
+  equations_.r.head(nb) += shape_.base.transpose() * beyond_.wrench();
+  const Mat6 K = beyond_.K(), U = beyond_.U();
+  for (Eigen::Index i = 0; i < nb; ++i) {
+    for (Eigen::Index j = i; j < nb; ++j) {
+      equations_.base(i, j) += shape_.base.col(i).dot(K * shape_.base.col(j));
+      if (i != j) equations_.base(j, i) += (U * shape_.base.col(j)).dot(shape_.base.col(i));
+    }
+  }
 }
 
 }  // namespace
@@ -149,93 +337,23 @@ Equations make_equations(const Configuration& shape, bool symmetric, int slides)
 }
 
 void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations) {
-  const Rod& rod = *shape.rod;
-  linalg::Chain& chain = equations.chain;
-  const int nb = rod.base_coordinates();
-  Beyond beyond;
-  std::size_t left = loads.size();  // not yet met
-  const auto internal = [&](int i, int column, const Mat3& R, const Vec3& p) {
-    const Vec3 force = -R.transpose() * beyond.wrench.tail<3>();
-    const Vec3 moment =
-        -R.transpose() * (beyond.wrench.head<3>() - (p - shape.origin).cross(Vec3(beyond.wrench.tail<3>())));
-    equations.internal.col(2 * i + column) << moment, force;
-  };
-
-  for (int i = rod.count() - 1; i >= 0; --i) {
-    const Section& section = rod.sections[i];
-    const auto m = static_cast<Eigen::Index>(section.modes.size());
-    const Coefficients& strains = shape.strains[i];
-    auto r = equations.r.segment(nb + rod.first[i], m);
-    auto D = chain.block(i);
-    auto V = chain.V.middleCols(rod.first[i], m);
-    internal(i, 1, shape.R[i + 1], shape.p[i + 1]);
-
-    // What these exponentials do to the loads beyond them, alone and together with the steps of the same section before
-    // them; what those do alone follows when their turn comes.
-    const auto add = [&](const Crossing& crossing, const Beyond& of, const SectionTwists& before) {
-      const Columns T = crossing.T.leftCols(m), VT = of.K * T, UT = of.U * T;
-      r += crossing.gradient.head(m);
-      D += crossing.tangent.topLeftCorner(m, m) + before.transpose() * VT + UT.transpose() * before;
-      V += VT;
-      if (!chain.symmetric()) chain.U.middleCols(rod.first[i], m) += UT;
-    };
-
-    for (int k = shape.first_step[i + 1] - 1; k >= shape.first_step[i]; --k) {
-      const auto& start = shape.steps[k];
-      const Step& step = section.steps[static_cast<std::size_t>(k - shape.first_step[i])];
-      const std::span<const Piece> whole(&shape.pieces[static_cast<std::size_t>(start.piece)],
-                                         static_cast<std::size_t>(step.weights.rows()));
-      add(cross(whole, section, strains, shape.origin, beyond, step.weights, nullptr), beyond, start.before);
-
-      while (left > 0 && (loads[left - 1].s >= step.begin || (i == 0 && k == 0))) {
-        // All loads at one abscissa together.
-        const double s = loads[left - 1].s;
-        const Branch own = branch(shape, s);
-        Beyond here;
-        const bool slides = loads[left - 1].slide >= 0;
-        std::size_t number = 0;
-        for (; left > 0 && loads[left - 1].s == s; --left) {
-          const PointLoad& load = loads[left - 1];
-          if ((load.slide >= 0) != slides || (slides && number > 0)) break;  // each slide by itself
-          here.add(own.p + own.R * load.offset - shape.origin, load.force, load.moment, load);
-          ++number;
-        }
-        const Crossing crossing =
-            cross(own.pieces, section, strains, shape.origin, here, own.weights.value, slides ? &own.weights : nullptr);
-        add(crossing, here, start.before);
-        if (slides) {
-          Slide& slide = equations.slides[static_cast<std::size_t>(loads[left].slide)];
-          slide.attachment.link = i;
-          slide.attachment.g = here.K * crossing.T.col(m);
-          slide.attachment.b = crossing.tangent.col(m).head(m) + start.before.transpose() * slide.attachment.g;
-          slide.second = crossing.tangent(m, m);
-        }
-        beyond.add(here);
-      }
-    }
-    internal(i, 0, shape.R[i], shape.p[i]);
-  }
-
-  // The base's own coordinates: each turns and moves all that come after it.
-  equations.r.head(nb) += shape.base.transpose() * beyond.wrench;
-  for (int i = 0; i < nb; ++i) {
-    for (int j = i; j < nb; ++j) {
-      equations.base(i, j) += shape.base.col(i).dot(beyond.K * shape.base.col(j));
-      if (i != j) equations.base(j, i) += (beyond.U * shape.base.col(j)).dot(shape.base.col(i));
-    }
-  }
+  Walk(shape, loads, equations).run();
 }
 
 void add_elasticity(const Rod& rod, const Eigen::VectorXd& q, const Eigen::VectorXd& start, double rate,
                     Equations& equations) {
   for (int i = 0; i < rod.count(); ++i) {
     const Section& section = rod.sections[i];
-    auto r = rod.base_coordinates() + rod.first[i];
-    const auto m = static_cast<Eigen::Index>(section.modes.size());
-    equations.r.segment(r, m) += section.stiffness * q.segment(r, m);
-    equations.chain.block(i) += section.stiffness;
-    equations.r.segment(r, m) += rate * (section.damping * (q.segment(r, m) - start.segment(r, m)));
-    equations.chain.block(i) += rate * section.damping;
+    linalg::with_size(rod.first[i + 1] - rod.first[i], [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      const Eigen::Index m = rod.first[i + 1] - rod.first[i], at = rod.base_coordinates() + rod.first[i];
+      const auto stiffness = section.stiffness.topLeftCorner<M, M>(m, m);
+      const auto damping = section.damping.topLeftCorner<M, M>(m, m);
+      const Vector<M> own = q.segment<M>(at, m), flow = rate * (own - start.segment<M>(at, m));
+      equations.r.segment<M>(at, m).noalias() += stiffness * own;
+      equations.r.segment<M>(at, m).noalias() += damping * flow;
+      equations.chain.D.block<M, M>(0, rod.first[i], m, m) += stiffness + rate * damping;
+    });
   }
 }
 

@@ -46,29 +46,34 @@ LegendreValues legendre(double x) { return legendre_derivatives(x).value; }
 LegendreValues legendre_slopes(double x) { return legendre_derivatives(x).first; }
 
 PartialWeights partial_weights(double begin, double end, int degree, double from, double s) {
+  PartialWeights weights;
+  partial_weights(begin, end, degree, from, s, weights);
+  return weights;
+}
+
+void partial_weights(double begin, double end, int degree, double from, double s, PartialWeights& w) {
   const double h = s - from;
-  PartialWeights w;
   if (degree == 0) {
-    w.value = Weights::Constant(1, 1, h);
-    w.first = Weights::Constant(1, 1, 1.0);
-    w.second = Weights::Zero(1, 1);
-    return w;
+    w.value.setConstant(1, 1, h);
+    w.first.setConstant(1, 1, 1.0);
+    w.second.setZero(1, 1);
+    return;
   }
-  w.value = w.first = w.second = Weights::Zero(kExponentials, degree + 1);
+  for (Weights* one : {&w.value, &w.first, &w.second}) one->setZero(kExponentials, degree + 1);
   const double slope = 2.0 / (end - begin);
   for (int i = 0; i < 3; ++i) {
-    const double c = kNode[static_cast<std::size_t>(i)];
+    const double c = kNode[static_cast<std::size_t>(i)], dx = c * slope;
     const Legendre P = legendre_derivatives(slope * (from + c * h - begin) - 1.0);
-    for (int j = 0; j < kExponentials; ++j) {
-      for (int d = 0; d <= degree; ++d) {
-        const double a = kScheme[j][i], dx = c * slope;
-        w.value(j, d) += a * h * P.value[d];
-        w.first(j, d) += a * (P.value[d] + h * dx * P.first[d]);
-        w.second(j, d) += a * (2.0 * dx * P.first[d] + h * dx * dx * P.second[d]);
+    for (int d = 0; d <= degree; ++d) {
+      const double value = h * P.value[d], first = P.value[d] + h * dx * P.first[d];
+      const double second = 2.0 * dx * P.first[d] + h * dx * dx * P.second[d];
+      for (int j = 0; j < kExponentials; ++j) {
+        w.value(j, d) += kScheme[j][i] * value;
+        w.first(j, d) += kScheme[j][i] * first;
+        w.second(j, d) += kScheme[j][i] * second;
       }
     }
   }
-  return w;
 }
 
 std::vector<Step> integration_steps(double begin, double end, int degree) {

@@ -44,5 +44,6 @@ struct PartialWeights {
   Weights value, first, second;
 };
 PartialWeights partial_weights(double begin, double end, int degree, double from, double s);
+void partial_weights(double begin, double end, int degree, double from, double s, PartialWeights& weights);
 
 }  // namespace sinew::rod

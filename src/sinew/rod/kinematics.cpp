@@ -9,23 +9,20 @@ namespace {
 /// Exponentials one after another from a frame on; returns the last frame.
 void walk(const Weights& weights, const Coefficients& strains, Mat3& R, Vec3& p, std::vector<Piece>& pieces) {
   for (Eigen::Index j = 0; j < weights.rows(); ++j) {
-    const Vec6 W = strains * weights.row(j).head(strains.cols()).transpose();
+    Vec6 W = weights(j, 0) * strains.col(0);
+    for (Eigen::Index d = 1; d < strains.cols(); ++d) W += weights(j, d) * strains.col(d);
     const Piece& piece = pieces.emplace_back(R, p, W);
     p = piece.end();
     R = piece.end_frame();
   }
 }
 
-/// Adds the twists of the coordinates of a section that these exponentials bring.
-void add_twists(const Section& section, const Weights& weights, std::span<const Piece> pieces, const Vec3& origin,
+/// Adds the twists of the coordinates of a section that exponential j brings, given its own.
+void add_twists(const Section& section, const Weights& weights, Eigen::Index j, const Mat6& own,
                 SectionTwists& twists) {
-  for (std::size_t j = 0; j < pieces.size(); ++j) {
-    const Mat6 own = piece_twists(pieces[j], origin);
-    for (std::size_t c = 0; c < section.modes.size(); ++c) {
-      const Mode& mode = section.modes[c];
-      twists.col(static_cast<Eigen::Index>(c)) +=
-          weights(static_cast<Eigen::Index>(j), mode.degree) * own.col(mode.strain);
-    }
+  for (std::size_t c = 0; c < section.modes.size(); ++c) {
+    const Mode& mode = section.modes[c];
+    twists.col(static_cast<Eigen::Index>(c)) += weights(j, mode.degree) * own.col(mode.strain);
   }
 }
 
@@ -86,7 +83,10 @@ Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd&
       const std::size_t from = shape.pieces.size();
       shape.steps.push_back({R, p, twists, static_cast<int>(from)});
       walk(step.weights, strains, R, p, shape.pieces);
-      add_twists(section, step.weights, std::span(shape.pieces).subspan(from), shape.origin, twists);
+      for (Eigen::Index j = 0; j < step.weights.rows(); ++j) {
+        const Piece& piece = shape.pieces[from + static_cast<std::size_t>(j)];
+        add_twists(section, step.weights, j, piece_twists(piece, shape.origin), twists);
+      }
     }
     shape.twists.middleCols(rod.first[i], twists.cols()) = twists;
     shape.first_step.push_back(static_cast<int>(shape.steps.size()));
@@ -98,19 +98,26 @@ Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd&
 
 Branch branch(const Configuration& shape, double s) {
   Branch branch;
-  branch.section = shape.rod->section_at(s);
-  const Section& section = shape.rod->sections[branch.section];
+  const int i = shape.rod->section_at(s);
+  const Section& section = shape.rod->sections[i];
   std::size_t step = 0;
   while (step + 1 < section.steps.size() && s >= section.steps[step].end) ++step;
-  branch.step = shape.first_step[branch.section] + static_cast<int>(step);
-  const Coefficients& strains = shape.strains[branch.section];
-  branch.weights =
-      partial_weights(section.begin, section.end, static_cast<int>(strains.cols()) - 1, section.steps[step].begin, s);
-  branch.R = shape.steps[branch.step].R;
-  branch.p = shape.steps[branch.step].p;
-  branch.pieces.reserve(kExponentials);
-  walk(branch.weights.value, strains, branch.R, branch.p, branch.pieces);
+  branch_in(shape, i, shape.first_step[i] + static_cast<int>(step), s, branch);
   return branch;
+}
+
+void branch_in(const Configuration& shape, int i, int step, double s, Branch& branch) {
+  const Section& section = shape.rod->sections[i];
+  const Coefficients& strains = shape.strains[i];
+  branch.section = i;
+  branch.step = step;
+  partial_weights(section.begin, section.end, static_cast<int>(strains.cols()) - 1,
+                  section.steps[static_cast<std::size_t>(step - shape.first_step[i])].begin, s, branch.weights);
+  branch.R = shape.steps[step].R;
+  branch.p = shape.steps[step].p;
+  branch.pieces.clear();
+  branch.pieces.reserve(static_cast<std::size_t>(branch.weights.value.rows()));
+  walk(branch.weights.value, strains, branch.R, branch.p, branch.pieces);
 }
 
 CurvePoint curve_point(const Configuration& shape, double s) {
@@ -122,18 +129,22 @@ CurvePoint curve_point(const Configuration& shape, double s) {
   point.position = own.p;
   point.R = own.R;
   point.twists = shape.steps[own.step].before;
-  add_twists(section, own.weights.value, own.pieces, shape.origin, point.twists);
   point.derivative.setZero();
-  for (std::size_t j = 0; j < own.pieces.size(); ++j) {
-    const auto row = static_cast<Eigen::Index>(j);
-    const Vec6 dW = strains * own.weights.first.row(row).head(strains.cols()).transpose();
-    point.derivative += moved(piece_twists(own.pieces[j], shape.origin) * dW, own.p - shape.origin);
+  for (Eigen::Index j = 0; j < own.weights.value.rows(); ++j) {
+    const Mat6 twists = piece_twists(own.pieces[static_cast<std::size_t>(j)], shape.origin);
+    add_twists(section, own.weights.value, j, twists, point.twists);
+    const Vec6 dW = strains * own.weights.first.row(j).head(strains.cols()).transpose();
+    point.derivative += moved(twists * dW, own.p - shape.origin);
   }
   // gamma_s = R u, so gamma_ss = R (k x u + u').
-  const double x = (2.0 * s - section.begin - section.end) / section.length();
-  const Vec6 xi = strains * legendre(x).head(strains.cols());
-  const Vec6 slope = strains * legendre_slopes(x).head(strains.cols()) * (2.0 / section.length());
-  point.second = own.R * (xi.head<3>().cross(xi.tail<3>()) + slope.tail<3>());
+  Vec6 xi = strains.col(0);
+  Vec3 slope = Vec3::Zero();
+  if (strains.cols() > 1) {
+    const double x = (2.0 * s - section.begin - section.end) / section.length();
+    xi = strains * legendre(x).head(strains.cols());
+    slope = strains.bottomRows<3>() * legendre_slopes(x).head(strains.cols()) * (2.0 / section.length());
+  }
+  point.second = own.R * (xi.head<3>().cross(xi.tail<3>()) + slope);
   return point;
 }
 

@@ -17,16 +17,19 @@ using SectionTwists = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 * (kHighe
 /// One exponential: the frame (R, p) times exp(phi, rho).
 struct Piece {
   Piece(const Mat3& frame, const Vec3& start, const Vec6& W)
-      : R(frame), p(start), phi(W.head<3>()), rho(W.tail<3>()), maps(lie::RotationMap::both(phi)) {}
+      : R(frame), p(start), phi(W.head<3>()), rho(W.tail<3>()), maps(lie::RotationMap::both(phi)) {
+    tip = p + R * (tangent() * rho);
+  }
   const lie::RotationMap& exponential() const { return maps[0]; }
   const lie::RotationMap& tangent() const { return maps[1]; }
   Mat3 end_frame() const { return R * exponential().matrix(); }
-  Vec3 end() const { return p + R * (tangent() * rho); }
+  const Vec3& end() const { return tip; }
 
   Mat3 R;
   Vec3 p;
   Vec3 phi, rho;
   std::array<lie::RotationMap, 2> maps;
+  Vec3 tip;
 };
 
 /// The base of a rod: its placement at rest in the world, and how far it has been turned since (free bases only).
@@ -68,6 +71,8 @@ struct Branch {
   Vec3 p;
 };
 Branch branch(const Configuration& shape, double s);
+/// The same in a step known already, given as in Branch; `branch` is written over and keeps its memory.
+void branch_in(const Configuration& shape, int section, int step, double s, Branch& branch);
 
 /// A point on the centreline.
 struct CurvePoint {

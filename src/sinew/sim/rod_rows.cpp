@@ -124,9 +124,13 @@ void RodRows::finish() {
   const rod::Rod& rod = *shape_.rod;
   const RodModel& model = context_.model.rods[number_];
   const int nb = rod.base_coordinates();
-  add_masses();
+  const auto earlier = [](const rod::PointLoad& a, const rod::PointLoad& b) { return a.s < b.s; };
   add_forces();
-  std::stable_sort(loads_.begin(), loads_.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
+  std::stable_sort(loads_.begin(), loads_.end(), earlier);
+  const auto sorted = static_cast<std::ptrdiff_t>(loads_.size());
+  loads_.reserve(loads_.size() + rod.masses.size());
+  add_masses();  // most of them, and sorted already
+  std::inplace_merge(loads_.begin(), loads_.begin() + sorted, loads_.end(), earlier);
   rod::Equations equations = rod::make_equations(shape_, rod::conservative(loads_), static_cast<int>(slides_.size()));
   rod::add_loads(shape_, loads_, equations);
   rod::add_elasticity(rod, iterate_.rods[number_].q, context_.start.rods[number_].q, context_.rate, equations);
