@@ -281,5 +281,20 @@ TEST(Run, TheExampleToItsEnd_slow) {
   expect_numbers_only(folder / "out");
 }
 
+TEST(Examples, AllRunAndLeaveTheirResults) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(examples())) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++count;
+    const Folder folder;
+    const Finished done = sinew(
+        {"run", entry.path().string(), "-o", (folder / "out").string(), "--quiet", "--set", "time.duration=0.1 s"}, {},
+        120.0);
+    EXPECT_EQ(done.code, 0) << entry.path() << said(done);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/picture.png")) << entry.path();
+  }
+  EXPECT_GE(count, 3);
+}
+
 }  // namespace
 }  // namespace sinew::test
