@@ -61,12 +61,12 @@ Json sizes_json(const Model& model) {
 }
 
 /// Load factors at which a static path turned back.
-std::vector<double> limit_points(const io::Recording& recording) {
+std::vector<double> limit_points(const io::Recording& recording, double duration) {
   std::vector<double> factors;
   for (std::size_t i = 1; i + 1 < recording.steps.size(); ++i) {
     const double before = recording.steps[i - 1].time, at = recording.steps[i].time,
                  after = recording.steps[i + 1].time;
-    if ((at - before) * (after - at) < 0.0) factors.push_back(at / recording.steps.back().time);
+    if ((at - before) * (after - at) < 0.0) factors.push_back(at / duration);
   }
   return factors;
 }
@@ -118,7 +118,8 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
                        {"largest_residual", residual},
                        {"largest_violation_m", violation},
                        {"gap_at_dropped_points_m", gap}};
-  if (loaded.model.scene.analysis == Analysis::statics) report["summary"]["limit_points"] = limit_points(recording);
+  if (loaded.model.scene.analysis == Analysis::statics)
+    report["summary"]["limit_points"] = limit_points(recording, loaded.model.scene.time.duration);
   if (!summary.times.empty()) {
     report["summary"]["steps_with_rotated_tangent"] = summary.rotated;
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;

@@ -45,6 +45,11 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
       warnings.push_back(
           fmt::format("couplings.{}: the rod has left the body, none of its points is on it any more", i));
   }
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    if (model.actuators[i].tendon && state.actuators[i] < 0.0)
+      warnings.push_back(fmt::format("actuators.{}: the tendon pushes with {:.3g} N; a real one would go slack",
+                                     model.actuators[i].name, -state.actuators[i]));
+  }
   for (const CableModel& cable : model.cables) {
     const double tension = state.lambda[cable.length_row];
     if (tension < 0.0) {

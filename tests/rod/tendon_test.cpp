@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "rod/random_rods.hpp"
 #include "sinew/rod/kinematics.hpp"
@@ -56,6 +57,17 @@ TEST_P(EveryTendon, length_is_that_of_its_points_and_has_its_derivatives) {
     }
   }
   EXPECT_NEAR(length.value, polyline, 1e-6);
+}
+
+TEST(Tendon, that_winds_many_times_in_a_section_does_not_bend_the_rod) {
+  for (const int turns : {1, 6, 20}) {
+    Discretisation cut;
+    cut.ends = {0.0, 1.0};
+    cut.modes = modes_of({1, 2});
+    const Rod rod = make_rod(cut, {{0.0, 1.0, SolidPart{Circle{0.01}, Circle{0.01}, 1e6, 0.4}}});
+    const Tendon helix{0.0, 1.0, 0.01, 0.01, 0.0, 2.0 * std::numbers::pi * turns};
+    EXPECT_LT(tendon_length(rod, helix, Eigen::VectorXd::Zero(2)).gradient.norm(), 1e-9) << turns;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rod, EveryTendon,

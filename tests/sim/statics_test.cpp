@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sinew/error/input_error.hpp"
 #include "support/scenes.hpp"
 
 namespace sinew {
@@ -133,6 +134,52 @@ TEST(Statics, AStateOfAPathIsACheckpoint) {
   const StepResult a = advance(model, workspace, state), b = advance(model, workspace, copy);
   ASSERT_TRUE(accepted(a.report.status));
   EXPECT_EQ(pack(a.next), pack(b.next));
+}
+
+TEST(Statics, APathThatNeverReachesTheLoadEnds) {
+  // The tip is held by a frame that goes where an inextensible rod cannot follow.
+  Scene scene = test::lone_rod(0.0, 10);
+  scene.analysis = Analysis::statics;
+  scene.rods[0].second.path = {Vec3::Zero(), Vec3(0.25, 0.15, 0), Vec3(0.5, 0, 0)};
+  scene.outputs.clear();
+  Frame away;
+  away.motion = FrameMotion{{0.0, 0.5}, {}, {Vec3::Zero(), Vec3(0.3, 0, 0)}};
+  scene.frames.emplace_back("away", away);
+  Tie tip;
+  tip.rod = "rod";
+  tip.frame = "away";
+  scene.couplings.emplace_back(tip);
+  const test::Trace trace = test::run_all(build(scene, test::read_block));
+  EXPECT_EQ(trace.end, RunEnd::stopped);
+  EXPECT_LT(trace.states.size(), 4000u);
+}
+
+TEST(Statics, ATieThatWouldTurnOverHalvesItsStep) {
+  // Twisting the tip by 120 degrees in one step: the rows about the axes hold at -60 degrees, too.
+  Scene scene = test::lone_rod(0.0, 4);
+  scene.analysis = Analysis::quasi_static;
+  scene.time = {1.0, 1.0};
+  scene.rods[0].second.strains.push_back(Strain::elongation);
+  Frame hand;
+  hand.motion = FrameMotion{{0.0, 1.0}, {Vec3::Zero(), Vec3(2.0 * std::numbers::pi / 3.0, 0, 0)}, {}};
+  scene.frames.emplace_back("hand", hand);
+  Tie grip;
+  grip.rod = "rod";
+  grip.frame = "hand";
+  grip.about = {true, true, true};
+  scene.couplings.emplace_back(grip);
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  EXPECT_GT(trace.states.size(), 2u);
+  EXPECT_NEAR(rod::strain(model.rods[0].rod, trace.states.back().rods[0].q, 0.25)[0],
+              2.0 * std::numbers::pi / 3.0 / 0.5, 1e-6);
+}
+
+TEST(Statics, ScenesWithSolidsAreRefused) {
+  Scene scene = test::cable_block();
+  scene.analysis = Analysis::statics;
+  EXPECT_THROW(build(scene, test::read_block), InputError);
 }
 
 }  // namespace

@@ -153,16 +153,18 @@ class Walk {
         left_(loads.size()) {}
 
   void run() {
+    for (std::size_t l = loads_.size(); l > 0 && loads_[l - 1].s >= rod_.length(); --l)  // what acts on the very tip
+      tip_.add(shape_.p.back() + shape_.R.back() * loads_[l - 1].offset - shape_.origin, loads_[l - 1]);
     for (int i = rod_.count() - 1; i >= 0; --i) {
-      internal(i, 1, shape_.R[i + 1], shape_.p[i + 1]);
+      internal(i, 1, i + 1 == rod_.count() ? tip_ : beyond_, shape_.R[i + 1], shape_.p[i + 1]);
       linalg::with_size(rod_.first[i + 1] - rod_.first[i], [&](auto size) { pass_section<decltype(size)::value>(i); });
-      internal(i, 0, shape_.R[i], shape_.p[i]);
+      internal(i, 0, beyond_, shape_.R[i], shape_.p[i]);
     }
     add_base();
   }
 
  private:
-  void internal(int i, int column, const Mat3& R, const Vec3& p);
+  void internal(int i, int column, const Beyond& beyond, const Mat3& R, const Vec3& p);
   template <int M>
   void pass_section(int i);
   template <int M>
@@ -180,14 +182,14 @@ class Walk {
   Equations& equations_;
   bool symmetric_;
   bool stretches_ = false;  ///< the section's coordinates do
-  Beyond beyond_;
+  Beyond beyond_, tip_;
   std::size_t left_;  ///< loads not yet met
   Branch branch_;     ///< to the loads at hand
 };
 
-void Walk::internal(int i, int column, const Mat3& R, const Vec3& p) {
-  const Vec3 force = beyond_.wrench().tail<3>();
-  const Vec3 moment = beyond_.wrench().head<3>() - (p - shape_.origin).cross(force);
+void Walk::internal(int i, int column, const Beyond& beyond, const Mat3& R, const Vec3& p) {
+  const Vec3 force = beyond.wrench().tail<3>();
+  const Vec3 moment = beyond.wrench().head<3>() - (p - shape_.origin).cross(force);
   auto own = equations_.internal.col(2 * i + column);
   own.head<3>().noalias() = -(R.transpose() * moment);
   own.tail<3>().noalias() = -(R.transpose() * force);

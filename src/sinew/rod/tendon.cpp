@@ -69,10 +69,13 @@ TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::Ve
     strains(3, 0) += 1.0;
     // A tendon that winds about the rod needs more points the further it turns.
     const double turn = std::abs(tendon.end_angle - tendon.start_angle) * (to - from) / (tendon.to - tendon.from);
-    const int points = static_cast<int>(strains.cols()) + 4 + static_cast<int>(std::ceil(2.0 * turn));
-    const GaussRule& rule = gauss_rule(std::min(10, points));
-    for (std::size_t g = 0; g < rule.node.size(); ++g) {
-      const double s = from + (to - from) * rule.node[g], weight = (to - from) * rule.weight[g];
+    const int panels = 1 + static_cast<int>(turn);  // of at most a radian
+    const GaussRule& rule = gauss_rule(static_cast<int>(strains.cols()) + 4);
+    const double panel = (to - from) / panels;
+    for (std::size_t g = 0; g < rule.node.size() * static_cast<std::size_t>(panels); ++g) {
+      const std::size_t node = g % rule.node.size();
+      const double s = from + panel * (static_cast<double>(g / rule.node.size()) + rule.node[node]);
+      const double weight = panel * rule.weight[node];
       const auto P = legendre((2.0 * s - section.begin - section.end) / section.length());
       const Vec6 xi = strains * P.head(strains.cols());
       const Vec3 d = tendon.offset(s);

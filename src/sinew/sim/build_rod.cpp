@@ -220,7 +220,12 @@ RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod) 
   const Start start = rod.start.value_or(given ? Start::rest : Start::path);
   model.start = start == Start::path ? rod::coordinates_of(model.rod, layout.strains)
                                      : Eigen::VectorXd(Eigen::VectorXd::Zero(model.rod.coordinates()));
-  model.path_deviation = start == Start::path ? layout.deviation : 0.0;
+  if (start == Start::path) {  // as it lies, whatever its strains can follow
+    const rod::Configuration shape = start_shape(model);
+    for (int i = 0; i <= model.rod.count(); ++i)
+      model.path_deviation =
+          std::max(model.path_deviation, (shape.p[i] - curve.position(cut.ends[static_cast<std::size_t>(i)])).norm());
+  }
   for (const BaseAxis axis : rod.base) {
     if (!add_base_motion(model, {axis >= BaseAxis::turn_x, static_cast<int>(axis) % 3, 1.0}))
       reject(path + ".base", std::to_string(static_cast<int>(axis)), "names a motion twice", "list each motion once");

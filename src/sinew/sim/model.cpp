@@ -146,7 +146,8 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
            "makes more than 1e9 steps of " + text(scene.time.step) + " s", "shorten the run or lengthen time.step");
   }
   const double steps = scene.time.duration / scene.time.step;
-  if (std::abs(steps - std::round(steps)) > 1e-6) {
+  const bool grid = scene.analysis == Analysis::dynamic || scene.analysis == Analysis::quasi_static;
+  if (grid && std::abs(steps - std::round(steps)) > 1e-6) {
     model.warnings.push_back("time.duration is no whole number of steps; the run goes on to the next one, " +
                              text(std::ceil(steps) * scene.time.step) + " s");
   }
@@ -157,6 +158,9 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   if (scene.analysis == Analysis::statics && !(scene.time.duration > 0.0))
     reject("time.duration", text(scene.time.duration) + " s", "must be greater than 0 for `analysis: static`",
            "loads and motors are taken from the tables at the end of the duration");
+  if (scene.analysis == Analysis::statics && !scene.solids.empty())
+    reject("analysis", "static", "follows the path of rods only, and this scene has solids",
+           "use `analysis: quasi_static`: an equilibrium at every time of the grid");
   if (scene.analysis == Analysis::modal && !scene.solids.empty())
     reject("analysis", "modal", "finds the modes of rods only, and this scene has solids",
            "remove the solids, or use `analysis: dynamic`");
@@ -166,6 +170,10 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
       model.cables.push_back(build_cable(scene, name, rod));
     } else {
       model.rods.push_back(build_rod(scene, name, rod));
+      const RodModel& built = model.rods.back();
+      if (built.path_deviation > 0.01 * built.rod.length())
+        model.warnings.push_back("rods." + name + ": it starts " + text(built.path_deviation) +
+                                 " m off its path, which its sections and strains cannot follow");
     }
   }
   for (const auto& [name, actuator] : scene.actuators) build_actuator(model, name, actuator);

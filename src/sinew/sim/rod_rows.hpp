@@ -45,6 +45,9 @@ class RodRows {
   std::vector<int> slides_;  ///< unknown of each
 };
 
+/// Axes of what holds a tie, at an iterate, as columns `TieModel::length` long.
+rod::Mat3 holder_axes(const StepContext& context, const State& iterate, const TieModel& tie);
+
 /// Rows of ties in which a rod is held, or holds.
 void add_ties(RodRows& rod);
 

@@ -89,6 +89,7 @@ void each_number(StateType& state, const Visit& visit) {
   visit(state.energies.work);
   visit(state.path.step);
   visit(state.path.rate);
+  visit(state.path.count);
   array(state.path.direction);
   visit(state.frequency);
 }

@@ -38,6 +38,7 @@ struct Energies {
 struct PathState {
   double step = 0.0;          ///< arc length to try next
   double rate = 0.0;          ///< last change of the load factor over the arc
+  double count = 0.0;         ///< steps taken
   bool stable = true;         ///< the equilibrium there
   Eigen::VectorXd direction;  ///< and of everything else; empty before the first step and in other analyses
 };

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_ends.hpp"
@@ -16,6 +15,8 @@ constexpr double kFirstArc = 0.1, kLongestArc = 0.3, kShortestArc = 1e-7;
 /// Where stability is lost the path may branch, and a long step can miss the branch that a small load would take.
 constexpr double kArcAtBranch = kFirstArc / 64;
 constexpr double kStiffer = 1e-6;
+/// A path that has come back below no load, or takes more steps than this, does not lead to the full one.
+constexpr double kBehindTheStart = -0.05, kMostSteps = 3000;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 
 /// Everything prescribed at the load factor t.
@@ -103,16 +104,25 @@ struct Corrector {
                        here.violation() <= tolerance * model.size;
       if (met && report.newton > 0) {
         finish(context, here.reduced(), iterate);
-        report.status = finite(iterate) ? Status::converged : Status::diverged;
+        report.status = !finite(iterate)                ? Status::diverged
+                        : turned_over(context, iterate) ? Status::max_iterations
+                                                        : Status::converged;
+        if (const RodModel* rod = exhausted(model, iterate); rod && accepted(report.status)) {
+          report.status = Status::rod_exhausted;
+          report.detail = "rods." + rod->name;
+        }
         return report;
       }
       report.status = Status::max_iterations;
-      if (report.newton == (direction.size() > 0 ? kMostIterations : model.scene.newton.limit)) return report;
+      // The rotated tangent of a volume makes Newton linear: more iterations, not shorter steps.
+      const int most = direction.size() > 0 && !report.rotated ? kMostIterations : model.scene.newton.limit;
+      if (report.newton == most) return report;
       report.status = Status::singular;
       if (!here.factor(solid::Tangent::exact, report.detail)) return report;
       report.rotated |= here.rotated();
       report.unstable = here.unstable();
       stiffness = std::max(stiffness, here.stiffness());
+      report.detail = "constraint rows and rods";
       Increment increment = here.solve();
       if (!increment.reduced.ok) {
         here.stiffen(kStiffer);
@@ -155,9 +165,26 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
     return result;
   }
 
-  // The tangent of the path here, the way the last step went.
   StepReport report;
   const StepContext context = context_at(model, state, t0);
+  if (t0 < kBehindTheStart || state.path.count > kMostSteps) {
+    report.status = Status::path_lost;
+    return {state, report};
+  }
+
+  // Sliding points that the rod's end has passed or reached: the path jumps to where it goes on with them.
+  State followed = state;
+  follow_points(context, followed);
+  const bool changed = !std::equal(state.points.begin(), state.points.end(), followed.points.begin(),
+                                   [](const PointState& a, const PointState& b) { return a.on == b.on; });
+  if (changed) {
+    StepResult result = land(model, workspace, state, followed, t0);
+    result.next.time = state.time;
+    if (accepted(result.report.status)) result.next.path.count = state.path.count + 1.0;
+    return result;
+  }
+
+  // The tangent of the path here, the way the last step went.
   Linearization here(context, workspace, state, report.times);
   const Corrector tangent{model, workspace, state, {}, 0.0};
   report.status = Status::singular;
@@ -182,6 +209,7 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
     if (t >= 1.0) {  // land on the end
       advance_by(context, change, 1.0 - t0, iterate);
       StepResult last = land(model, workspace, state, iterate, 1.0);
+      report = last.report;
       if (accepted(last.report.status) && !missed(last.report, arc)) {
         last.next.time = duration;
         last.next.grid = state.grid + 1;
@@ -192,14 +220,13 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
     advance_by(context, change, arc * corrector.rate, iterate);
     report = corrector.correct(iterate, t);
     if (!accepted(report.status) || missed(report, arc)) continue;
-    if (const RodModel* rod = exhausted(model, iterate)) {
-      report.status = Status::rod_exhausted;
-      report.detail = "rods." + rod->name;
-      return {state, report};
-    }
     iterate.time = t * duration;
-    iterate.path.step =
-        std::min(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0), kLongestArc);
+    iterate.path.step = std::min(
+        arc *
+            std::clamp(static_cast<double>(report.rotated ? 3 * kWantedIterations : kWantedIterations) / report.newton,
+                       0.5, 2.0),
+        kLongestArc);
+    iterate.path.count = state.path.count + 1.0;
     iterate.path.stable = !report.unstable;
     iterate.path.direction = corrector.direction;
     iterate.path.rate = corrector.rate;

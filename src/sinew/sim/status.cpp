@@ -16,6 +16,8 @@ std::string_view to_string(Status status) {
       return "singular";
     case Status::diverged:
       return "diverged";
+    case Status::path_lost:
+      return "path_lost";
     case Status::rod_exhausted:
       return "rod_exhausted";
   }
@@ -40,6 +42,10 @@ std::string_view explain(Status status) {
              "picture; try a smaller step.";
     case Status::diverged:
       return "Numbers grew without bound. Try a smaller time step or a slower motion.";
+    case Status::path_lost:
+      return "The path of equilibria turned back for good: there is no equilibrium under the full load, or only one "
+             "that a "
+             "jump leads to. Reduce the load or the motion; the recorded states show how far it went.";
     case Status::rod_exhausted:
       return "The base end of a rod reached a sliding point. Let the rod start further outside the body, or pull less "
              "the other way.";

@@ -73,7 +73,8 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
   follow_points(context, iterate);
   StepReport report;
   const Newton& newton = model.scene.newton;
-  const bool fixed = newton.iterations > 0;
+  // Modes are those of an equilibrium.
+  const bool fixed = newton.iterations > 0 && model.scene.analysis != Analysis::modal;
   double stiffness = inertia_of(context);
   const auto fail = [&](Status status, std::string detail) -> StepResult {
     report.status = status;
@@ -115,6 +116,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
   }
 
   if (!finite(iterate)) return fail(Status::diverged, "the new state is not finite");
+  if (!fixed && turned_over(context, iterate)) return fail(Status::max_iterations, "a tie turned over");
   if (const RodModel* rod = exhausted(model, iterate)) return fail(Status::rod_exhausted, "rods." + rod->name);
   report.status = fixed ? Status::linearized : Status::converged;
   return {std::move(iterate), report};

@@ -17,6 +17,9 @@ void finish(const StepContext& context, const Reduced& reduced, State& next);
 
 bool finite(const State& state);
 
+/// A tie about an axis whose rows hold, but half a turn off: the step was too long for it.
+bool turned_over(const StepContext& context, const State& state);
+
 /// The first rod that has been drawn past a sliding point, if any.
 const RodModel* exhausted(const Model& model, const State& state);
 

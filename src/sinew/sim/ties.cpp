@@ -119,6 +119,10 @@ void add_holding(RodRows& rod, const TieModel& tie) {
 
 }  // namespace
 
+rod::Mat3 holder_axes(const StepContext& context, const State& iterate, const TieModel& tie) {
+  return holder(context, iterate, tie).d;
+}
+
 void add_ties(RodRows& rod) {
   for (const TieModel& tie : rod.context().model.ties) {
     if (tie.rod == rod.number()) add_held(rod, tie);
