@@ -14,6 +14,7 @@ using linalg::Vec6;
 /// Symmetric scaling: every row's and column's largest entry near one (Ruiz, four sweeps).
 Eigen::VectorXd equilibrate(Eigen::MatrixXd& K) {
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(K.rows());
+  if (K.rows() == 0) return scale;  // rods alone: there is no border
   for (int sweep = 0; sweep < 4; ++sweep) {
     Eigen::VectorXd d = K.cwiseAbs().rowwise().maxCoeff();
     for (double& value : d) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
@@ -234,8 +235,11 @@ RightSide CoupledFactor::residual(const RightSide& right, const CoupledSolution&
       left[part.whole_at[f]] -= moved;
       bound[part.whole_at[f]] += std::abs(moved);
     }
-    const double size = (right.chains[n].cwiseAbs() + own.cwiseAbs() + pull.cwiseAbs()).lpNorm<Eigen::Infinity>();
-    if (x.size() > 0 && size > 0.0) relative = std::max(relative, rest.chains.back().lpNorm<Eigen::Infinity>() / size);
+    if (x.size() > 0) {
+      const double size = (right.chains[n].cwiseAbs() + own.cwiseAbs() + pull.cwiseAbs()).lpNorm<Eigen::Infinity>();
+      if (size > 0.0) relative = std::max(relative, rest.chains.back().lpNorm<Eigen::Infinity>() / size);
+      if (!x.allFinite()) relative = INFINITY;
+    }
   }
   if (border > 0) {
     // Row by row in the scaled sense: what is left over against what was summed up, both as the border weighs them.
