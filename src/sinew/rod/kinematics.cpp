@@ -140,7 +140,7 @@ CurvePoint curve_point(const Configuration& shape, double s) {
   Vec6 xi = strains.col(0);
   Vec3 slope = Vec3::Zero();
   if (strains.cols() > 1) {
-    const double x = (2.0 * s - section.begin - section.end) / section.length();
+    const double x = section.local(s);
     xi = strains * legendre(x).head(strains.cols());
     slope = strains.bottomRows<3>() * legendre_slopes(x).head(strains.cols()) * (2.0 / section.length());
   }
@@ -151,6 +151,18 @@ CurvePoint curve_point(const Configuration& shape, double s) {
 Vec3 position(const Configuration& shape, double s, const Vec3& offset) {
   const Branch own = branch(shape, s);
   return own.p + own.R * offset;
+}
+
+Eigen::Matrix3Xd mass_positions(const Configuration& shape) {
+  const std::vector<MassPoint>& masses = shape.rod->masses;
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(masses.size()));
+  Branch at;
+  double s = -1.0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    if (masses[i].s != s) at = branch(shape, s = masses[i].s);  // several stand at each abscissa
+    positions.col(static_cast<Eigen::Index>(i)) = at.p + at.R * masses[i].offset;
+  }
+  return positions;
 }
 
 Matrix6X twists_at(const Configuration& shape, double s) {

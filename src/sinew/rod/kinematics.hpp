@@ -88,6 +88,9 @@ CurvePoint curve_point(const Configuration& shape, double s);
 /// Position of the material point at abscissa s, offset in the cross-section's frame.
 Vec3 position(const Configuration& shape, double s, const Vec3& offset = Vec3::Zero());
 
+/// Where the mass points are, 3 x count [m].
+Eigen::Matrix3Xd mass_positions(const Configuration& shape);
+
 /// Twist of every coordinate as felt at abscissa s, 6 x n; zero beyond it.
 Matrix6X twists_at(const Configuration& shape, double s);
 

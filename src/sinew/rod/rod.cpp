@@ -28,9 +28,6 @@ int degree_of(const Section& section) {
   return degree;
 }
 
-/// x of the Legendre polynomials at s.
-double local(const Section& section, double s) { return (2.0 * s - section.begin - section.end) / section.length(); }
-
 /// int B^T K B ds for K(s).
 template <class Matrix>
 Eigen::MatrixXd over_modes(const Section& section, const Profile& profile, const Matrix& K) {
@@ -39,7 +36,7 @@ Eigen::MatrixXd over_modes(const Section& section, const Profile& profile, const
   // Exact for constant and linearly tapering circles (degree four in s).
   each_gauss_point(profile, section.begin, section.end, degree_of(section) + 3, [&](double s, double weight) {
     const Mat6 at = K(profile, s);
-    const auto P = legendre(local(section, s));
+    const auto P = legendre(section.local(s));
     for (Eigen::Index i = 0; i < m; ++i) {
       for (Eigen::Index j = 0; j < m; ++j) {
         const Mode &a = section.modes[i], &b = section.modes[j];
@@ -97,13 +94,13 @@ Vec6 strain(const Rod& rod, const Eigen::VectorXd& q, double s) {
   const int i = rod.section_at(s);
   const Section& section = rod.sections[i];
   const Coefficients Z = strain_coefficients(section, rod.of_section(q, i));
-  return Z * legendre(local(section, s)).head(Z.cols());
+  return Z * legendre(section.local(s)).head(Z.cols());
 }
 
 Vec6 deviation(const Rod& rod, const Eigen::VectorXd& q, double s) {
   const int i = rod.section_at(s);
   const Section& section = rod.sections[i];
-  const auto P = legendre(local(section, s));
+  const auto P = legendre(section.local(s));
   const auto own = rod.of_section(q, i);
   Vec6 sum = Vec6::Zero();
   for (std::size_t c = 0; c < section.modes.size(); ++c)

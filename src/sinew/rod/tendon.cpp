@@ -47,7 +47,7 @@ Vec6 tendon_wrench(const Rod& rod, const Tendon& tendon, const Eigen::VectorXd& 
   const Section& section = rod.sections[number];
   Coefficients strains = strain_coefficients(section, rod.of_section(q, number));
   strains(3, 0) += 1.0;
-  const auto P = legendre((2.0 * s - section.begin - section.end) / section.length());
+  const auto P = legendre(section.local(s));
   const Vec3 t = tangent(tendon, strains * P.head(strains.cols()), s).normalized();
   wrench << tendon.offset(s).cross(t), t;
   return wrench;
@@ -76,7 +76,7 @@ TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::Ve
       const std::size_t node = g % rule.node.size();
       const double s = from + panel * (static_cast<double>(g / rule.node.size()) + rule.node[node]);
       const double weight = panel * rule.weight[node];
-      const auto P = legendre((2.0 * s - section.begin - section.end) / section.length());
+      const auto P = legendre(section.local(s));
       const Vec6 xi = strains * P.head(strains.cols());
       const Vec3 d = tendon.offset(s);
       const Vec3 v = tangent(tendon, xi, s);

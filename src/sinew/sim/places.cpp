@@ -26,19 +26,19 @@ Vec3 solid_point(const Model& model, const State& state, int solid, const solid:
   return solid::position(where, model.solids[solid].body.tetrahedra, state.solids[solid].x);
 }
 
+double motor_position(const Model& model, const State& state, const ActuatorModel& actuator) {
+  const Line& line = actuator.line;
+  if (actuator.tendon) {
+    return actuator.tendon_length -
+           rod::tendon_length(model.rods[line.rod].rod, *actuator.tendon, state.rods[line.rod].q).value;
+  }
+  if (line.rod >= 0) return state.rods[line.rod].q[actuator.unknown - model.rods[line.rod].unknown];
+  return state.cables[line.cable].z[actuator.unknown - model.cables[line.cable].unknown];
+}
+
 std::vector<double> motor_positions(const Model& model, const State& state) {
   std::vector<double> positions;
-  for (const ActuatorModel& actuator : model.actuators) {
-    const Line& line = actuator.line;
-    if (actuator.tendon) {
-      positions.push_back(actuator.tendon_length -
-                          rod::tendon_length(model.rods[line.rod].rod, *actuator.tendon, state.rods[line.rod].q).value);
-    } else if (line.rod >= 0) {
-      positions.push_back(state.rods[line.rod].q[actuator.unknown - model.rods[line.rod].unknown]);
-    } else {
-      positions.push_back(state.cables[line.cable].z[actuator.unknown - model.cables[line.cable].unknown]);
-    }
-  }
+  for (const ActuatorModel& actuator : model.actuators) positions.push_back(motor_position(model, state, actuator));
   return positions;
 }
 

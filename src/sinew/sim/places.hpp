@@ -16,7 +16,8 @@ rod::Configuration rod_shape(const Model& model, const State& state, int rod);
 /// A point of a solid.
 Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where);
 
-/// How far each motor has moved its base, or drawn its tendon [m] or [rad].
+/// How far a motor has moved its base, or drawn its tendon [m] or [rad]; and all of them.
+double motor_position(const Model& model, const State& state, const ActuatorModel& actuator);
 std::vector<double> motor_positions(const Model& model, const State& state);
 
 }  // namespace sinew

@@ -70,8 +70,7 @@ void add_cable(const StepContext& context, const State& iterate, int number, Red
 }
 
 /// Motors of bases: a known force, or a row delta_a = base coordinate - target with the force as its multiplier.
-void add_actuator(const StepContext& context, const State& iterate, double position, std::size_t number,
-                  Reduced& reduced) {
+void add_actuator(const StepContext& context, const State& iterate, std::size_t number, Reduced& reduced) {
   const ActuatorModel& actuator = context.model.actuators[number];
   if (actuator.tendon) return;  // with its rod
   const double arm = actuator.motion == Motion::rotation ? context.model.rods[actuator.line.rod].rod.length() : 1.0;
@@ -81,7 +80,7 @@ void add_actuator(const StepContext& context, const State& iterate, double posit
   problem.r[actuator.unknown] -= force;
   reduced.scale = std::max(reduced.scale, std::abs(force) / arm);
   if (actuator.row < 0) return;
-  const double off = position - target;
+  const double off = motor_position(context.model, iterate, actuator) - target;
   problem.G(actuator.row, actuator.unknown) = -1.0;
   problem.c[actuator.row] = off;
   reduced.violation = std::max(reduced.violation, std::abs(off) * arm);
@@ -118,8 +117,7 @@ Reduced linearize(const StepContext& context, const State& iterate) {
     rod.finish();
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i) add_cable(context, iterate, static_cast<int>(i), reduced);
-  const std::vector<double> positions = motor_positions(model, iterate);
-  for (std::size_t i = 0; i < model.actuators.size(); ++i) add_actuator(context, iterate, positions[i], i, reduced);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) add_actuator(context, iterate, i, reduced);
   add_followed(context, iterate, reduced);
   // Unknowns of the border are lengths, but for the turns of bases.
   Eigen::VectorXd r = reduced.problem.r;

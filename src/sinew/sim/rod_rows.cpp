@@ -43,14 +43,12 @@ void RodRows::add_masses() {
   const RodState& start = context_.start.rods[number_];
   const double rate = context_.rate;
   double acting = 0.0;  // inertia and weight each by themselves: in free fall they cancel
-  double s = -1.0;
-  rod::Branch at;
+  const Eigen::Matrix3Xd positions = rod::mass_positions(shape_);
   for (std::size_t i = 0; i < rod.masses.size(); ++i) {
     const rod::MassPoint& mass = rod.masses[i];
     const auto column = static_cast<Eigen::Index>(i);
-    if (mass.s != s) at = rod::branch(shape_, s = mass.s);
-    const Vec3 X = at.p + at.R * mass.offset;
-    const Vec3 acceleration = ((X - start.masses.col(column)) * rate - start.velocity.col(column)) * rate;
+    const Vec3 acceleration =
+        ((positions.col(column) - start.masses.col(column)) * rate - start.velocity.col(column)) * rate;
     rod::PointLoad own{mass.s, mass.offset, mass.mass * (acceleration - context_.gravity), mass.mass * rate * rate};
     own.bends = !context_.first_guess;
     load(own);

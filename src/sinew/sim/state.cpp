@@ -27,11 +27,8 @@ State initial_state(const Model& model) {
     RodState& own = state.rods.emplace_back();
     own.q = rod.start;
     const auto shape = rod::configure(rod.rod, rod.base, own.q);
-    const auto count = static_cast<Eigen::Index>(rod.rod.masses.size());
-    own.masses.resize(3, count);
-    for (Eigen::Index i = 0; i < count; ++i)
-      own.masses.col(i) = rod::position(shape, rod.rod.masses[i].s, rod.rod.masses[i].offset);
-    own.velocity.setZero(3, count);
+    own.masses = rod::mass_positions(shape);
+    own.velocity.setZero(3, own.masses.cols());
     own.internal.setZero(6, 2 * rod.rod.count());
   }
   for (const CableModel& cable : model.cables)

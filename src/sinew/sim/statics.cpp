@@ -91,7 +91,6 @@ struct Corrector {
 
   StepReport correct(State& iterate, double& t) const {
     StepReport report;
-    const double tolerance = model.scene.newton.tolerance;
     double stiffness = 0.0;
     for (;; ++report.newton) {
       const StepContext context = context_at(model, start, t);
@@ -100,9 +99,7 @@ struct Corrector {
       report.violation = here.violation();
       report.status = Status::diverged;
       if (!here.finite() || !std::isfinite(t)) return report;
-      const bool met = here.largest() <= tolerance * here.scale() + rounding_of(model, stiffness) &&
-                       here.violation() <= tolerance * model.size;
-      if (met && report.newton > 0) {
+      if (report.newton > 0 && balanced(model, here, stiffness)) {
         finish(context, here.reduced(), iterate);
         report.status = !finite(iterate)                ? Status::diverged
                         : turned_over(context, iterate) ? Status::max_iterations

@@ -94,8 +94,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
     report.violation = here.violation();
     if (!here.finite()) return fail(Status::diverged, "forces are not finite");
-    const bool met = here.largest() <= newton.tolerance * here.scale() + rounding_of(model, stiffness) &&
-                     here.violation() <= newton.tolerance * model.size;
+    const bool met = balanced(model, here, stiffness);
     if (fixed ? report.newton == newton.iterations : (met && report.newton > 0)) {
       finish(context, here.reduced(), iterate);
       break;

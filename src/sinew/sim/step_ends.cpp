@@ -39,8 +39,7 @@ void follow_points(const StepContext& context, State& iterate) {
       shape = rod::configure(rod, base_of(context, iterate, number), iterate.rods[number].q);
       configured = number;
     }
-    const Vec3 P =
-        solid::position(point.where, context.model.solids[point.solid].body.tetrahedra, iterate.solids[point.solid].x);
+    const Vec3 P = solid_point(context.model, iterate, point.solid, point.where);
     PointState& state = iterate.points[k];
     state.s = constraint::project(shape, state.s, P);
     state.on = state.s <= rod.length();
@@ -105,12 +104,7 @@ void finish(const StepContext& context, const Reduced& reduced, State& next) {
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
     const rod::Rod& rod = model.rods[i].rod;
     const auto shape = rod::configure(rod, base_of(context, next, static_cast<int>(i)), next.rods[i].q);
-    rod::Branch at;
-    double s = -1.0;
-    for (std::size_t m = 0; m < rod.masses.size(); ++m) {
-      if (rod.masses[m].s != s) at = rod::branch(shape, s = rod.masses[m].s);
-      next.rods[i].masses.col(static_cast<Eigen::Index>(m)) = at.p + at.R * rod.masses[m].offset;
-    }
+    next.rods[i].masses = rod::mass_positions(shape);
     next.rods[i].velocity = (next.rods[i].masses - context.start.rods[i].masses) * context.rate;
     next.rods[i].internal = reduced.internal[i];
   }
@@ -173,6 +167,10 @@ double inertia_of(const StepContext& context) {
   return mass * context.rate * context.rate;
 }
 
-double rounding_of(const Model& model, double stiffness) { return 1e-14 * stiffness * model.size; }
+bool balanced(const Model& model, const Linearization& here, double stiffness) {
+  const double tolerance = model.scene.newton.tolerance;
+  const double rounding = 1e-14 * stiffness * model.size;
+  return here.largest() <= tolerance * here.scale() + rounding && here.violation() <= tolerance * model.size;
+}
 
 }  // namespace sinew

@@ -26,7 +26,8 @@ const RodModel* exhausted(const Model& model, const State& state);
 /// [N/m] what holds the rods in their place in the step: their masses over h^2.
 double inertia_of(const StepContext& context);
 
-/// [N] what forces are known to, whatever they add up to: rounding of positions times stiffness.
-double rounding_of(const Model& model, double stiffness);
+/// Forces and rows meet the scene's tolerance. Forces are known to the rounding of positions times `stiffness` [N/m]
+/// only, whatever they add up to.
+bool balanced(const Model& model, const Linearization& here, double stiffness);
 
 }  // namespace sinew
