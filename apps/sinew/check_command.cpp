@@ -53,6 +53,10 @@ void print_coupling(const Model& model, std::size_t number) {
                                : tie->frame ? "frame " + *tie->frame
                                             : "the ground";
     fmt::print("coupling {}: rod {} held by {}\n", number, tie->rod, holder);
+    if (facts.outside > 0) {
+      fmt::print("  the point lies {:.3g} mm outside the mesh and is tied to the nearest element\n",
+                 1e3 * facts.farthest);
+    }
     return;
   }
   const Slide& slide = std::get<Slide>(model.scene.couplings[number]);

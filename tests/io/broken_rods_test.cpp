@@ -84,6 +84,8 @@ const std::vector<Broken> cases = {
      "rods.spine.parts.4.section.stiffness.matrix.4", "0", "must be greater than 0", "matrix"},
     {"matrix: [1, 2, 3, 4e3, 5e3, 6e3]", "matrix: 5", 29, "rods.spine.parts.4.section.stiffness.matrix", "5",
      "6 numbers, the diagonal, or of 6 rows", "matrix"},
+    {"material: {damping: 20 ms}", "material: {young: 1 GPa, damping: 20 ms}", 62, "rods.given.material.young", "",
+     "has no meaning beside a given stiffness", "remove it: `matrix` and `line_density` say all"},
     {"line_density: 0.1 kg/m", "line_density: 0.1 kg/m^3", 60, "rods.given.section.stiffness.line_density",
      "0.1 kg/m^3", "must be a line density, but 'kg/m^3' is a unit of a density", "g/m, kg/m"},
     // Parts.

@@ -140,16 +140,25 @@ TEST_P(EveryBasis, internal_wrench_balances_what_lies_beyond) {
                                         {1.1, Vec3::Zero(), Vec3(0.3, -1.0, 0.2)}};
   const Configuration shape = at(q);
   const Equations all = equations(q, loads);
-  for (int i = 0; i < rod.count(); ++i) {
-    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-    for (const PointLoad& load : loads) {
-      if (load.s < rod.sections[i].begin) continue;
-      force -= load.force;
-      moment -= (position(shape, load.s, load.offset) - shape.p[i]).cross(load.force);
+  std::vector<double> places;
+  for (const Balance& at : all.internal) {
+    places.push_back(at.s);
+    const CurvePoint here = curve_point(shape, at.s);
+    for (const bool before : {true, false}) {
+      Vec6 needed = Vec6::Zero();
+      for (const PointLoad& load : loads) {
+        if (before ? load.s < at.s : load.s <= at.s) continue;
+        needed.head<3>() -=
+            here.R.transpose() * (position(shape, load.s, load.offset) - here.position).cross(load.force);
+        needed.tail<3>() -= here.R.transpose() * load.force;
+      }
+      EXPECT_LT(((before ? at.before : at.beyond) - needed).norm(), 2e-13) << at.s << before;
     }
-    EXPECT_LT((all.internal.col(2 * i).tail<3>() - shape.R[i].transpose() * force).norm(), 1e-13);
-    EXPECT_LT((all.internal.col(2 * i).head<3>() - shape.R[i].transpose() * moment).norm(), 1e-13);
   }
+  std::vector<double> expected = {0.42, 1.1};  // the latter is the tip
+  for (const Section& section : rod.sections) expected.push_back(section.begin);
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(places, expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rod, EveryBasis,

@@ -6,7 +6,9 @@
 
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/rod/section.hpp"
+#include "sinew/sim/internal.hpp"
 #include "support/scenes.hpp"
+#include "validation/rods.hpp"
 
 namespace sinew {
 namespace {
@@ -188,6 +190,65 @@ TEST(LoneRod, strains_outside_the_basis_keep_their_value_from_the_path) {
     const rod::Vec6 xi = rod::strain(model.rods[0].rod, trace.states.back().rods[0].q, i);
     EXPECT_NEAR(std::hypot(xi[1], xi[2]), 10.0, 0.5) << i;
   }
+}
+
+TEST(InternalForces, stand_on_both_sides_of_concentrated_loads) {
+  // One section whose length and cross-sections are rigid: what holds it follows from balance alone.
+  const double L = 0.5, F = 3.0;
+  Scene scene = test::straight_rod(L, 1, test::given({1, 1, 1, 1, 1, 1}));
+  test::add_load(scene, Vec3(F, 0, 0), Vec3::Zero(), 0.3);
+  test::add_load(scene, Vec3(1.0, 0, 0));
+  Actuator tendon;
+  tendon.rod = "rod";
+  tendon.driven = Driven::force;
+  tendon.tendon.emplace();
+  tendon.tendon->from = 0.1;
+  tendon.tendon->to = 0.4;
+  tendon.drive = Table{{0.0}, {2.0}};
+  scene.actuators.emplace_back("tendon", tendon);
+  const test::Solved solved = test::solve(scene);
+  const auto axial = [&](double s) { return internal_wrench(solved.model, solved.end(), 0, s)[3]; };
+  EXPECT_NEAR(axial(0.0), F + 1.0, 1e-9);
+  EXPECT_NEAR(axial(0.099), F + 1.0, 1e-9);
+  EXPECT_NEAR(axial(0.1), F - 1.0, 1e-9);
+  EXPECT_NEAR(axial(0.299), F - 1.0, 1e-9);
+  EXPECT_NEAR(axial(0.301), -1.0, 1e-9);
+  EXPECT_NEAR(axial(0.399), -1.0, 1e-9);
+  EXPECT_NEAR(axial(0.401), 1.0, 1e-9);
+  EXPECT_NEAR(axial(L), 1.0, 1e-9);
+}
+
+TEST(InternalForces, shear_beside_a_tie_and_under_weight) {
+  // A clamped rod propped at half its length: the shear force jumps by the prop's force.
+  const double L = 0.5, F = 0.01;
+  Scene scene = test::straight_rod(L, 3, test::given({1, 1, 1, 1, 1, 1}), test::kBending, 3);
+  test::add_load(scene, Vec3(0, F, 0));
+  test::add_tie(scene, {false, true, false}).at = 0.5 * L;
+  const test::Solved solved = test::solve(scene);
+  const auto shear = [&](double s) { return internal_wrench(solved.model, solved.end(), 0, s)[4]; };
+  EXPECT_NEAR(shear(0.5 * L), F, 1e-6 * F);
+  EXPECT_NEAR(shear(L), F, 1e-6 * F);
+  EXPECT_NEAR(shear(0.5 * L - 1e-6), -1.5 * F, 1e-3 * F);  // prop at half: 5/2 F
+  EXPECT_NEAR(shear(0.01), -1.5 * F, 1e-3 * F);
+}
+
+TEST(Work, of_a_load_is_what_a_static_path_stores) {
+  for (const Analysis analysis : {Analysis::statics, Analysis::quasi_static}) {
+    Scene scene = test::straight_rod(0.5, 4, test::given({1, 1, 1, 1, 1, 1}), test::kBending, 1, 50);
+    scene.analysis = analysis;
+    test::add_load(scene, Vec3(0, 0.5, 0));
+    const test::Solved solved = test::solve(scene);
+    const double stored = elastic_energy(solved.model, solved.end());
+    EXPECT_GT(stored, 1e-3);
+    EXPECT_NEAR(solved.end().energies.work, stored, 2e-3 * stored);
+  }
+  // A constant load counts from nothing on a static path, too.
+  Scene scene = test::straight_rod(0.5, 4, test::given({1, 1, 1, 1, 1, 1}), test::kBending, 1);
+  scene.analysis = Analysis::statics;
+  test::add_load(scene, Vec3(0, 0.5, 0)).factor = Table{{0.0}, {1.0}};
+  const test::Solved solved = test::solve(scene);
+  const double stored = elastic_energy(solved.model, solved.end());
+  EXPECT_NEAR(solved.end().energies.work, stored, 0.02 * stored);
 }
 
 }  // namespace

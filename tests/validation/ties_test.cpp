@@ -192,5 +192,21 @@ TEST(Tie, two_cantilevers_pinned_tip_to_tip_share_a_load) {
   EXPECT_NEAR(solved.tip(1).y(), solved.tip(0).y(), 1e-9 * exact + 1e-13);
 }
 
+TEST(Tie, that_nothing_in_the_rod_can_follow_warns) {
+  Scene scene = straight_rod(0.5, 4, given({1, 1, 1, 1, 1, 1}));
+  add_tie(scene, {true, false, false});
+  const Model locked = build(scene, read_block);
+  ASSERT_EQ(locked.warnings.size(), 1u);
+  EXPECT_NE(locked.warnings[0].find("add `elongation`"), std::string::npos) << locked.warnings[0];
+  scene.rods[0].second.strains = kExtensible;
+  EXPECT_TRUE(build(scene, read_block).warnings.empty());
+  scene.rods[0].second.strains = {Strain::bending_z};
+  std::get<Tie>(scene.couplings[0]) = Tie{};
+  std::get<Tie>(scene.couplings[0]).rod = "rod";
+  std::get<Tie>(scene.couplings[0]).along = {false, true, false};
+  std::get<Tie>(scene.couplings[0]).about = {true, false, true};
+  EXPECT_EQ(build(scene, read_block).warnings.size(), 1u);  // about x
+}
+
 }  // namespace
 }  // namespace sinew::test

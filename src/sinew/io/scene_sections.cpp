@@ -156,10 +156,20 @@ Type<RodMaterial> rod_material(Wants wants) {
 }
 
 Rule material_for_section() {
-  const auto check = [](const At& at, const std::vector<Key>& keys) {
-    if (!at.has("section") || at.has("material") || at.says("cable", "geometric")) return;
+  const std::vector<std::string> of_a_shape = {"young", "poisson", "density", "viscosity"};
+  const auto check = [of_a_shape](const At& at, const std::vector<Key>& keys) {
+    if (!at.has("section")) return;
     const At section = at.child("section");
-    if (section.is(Node::Kind::map) && section.has("stiffness")) return;
+    if (section.is(Node::Kind::map) && section.has("stiffness")) {
+      for (const std::string& name : of_a_shape) {
+        if (!at.has("material") || !at.child("material").has(name)) continue;
+        at.child("material")
+            .refuse_key(name, "has no meaning beside a given stiffness",
+                        "remove it: `matrix` and `line_density` say all, only `damping` may be added");
+      }
+      return;
+    }
+    if (at.has("material") || at.says("cable", "geometric")) return;
     for (const Key& key : keys) {
       if (key.name == "material") at.refuse_key("material", "is missing", "add it: " + help(key));
     }
@@ -169,7 +179,15 @@ Rule material_for_section() {
                           {"not", says_schema("cable", "geometric")}};
   const Json full = {{"required", {"material"}},
                      {"properties", {{"material", {{"required", {"young", "poisson", "density"}}}}}}};
-  return {check, {{"if", needs_one}, {"then", full}}};
+  const Json is_given = {{"required", {"section"}},
+                         {"properties", {{"section", {{"type", "object"}, {"required", {"stiffness"}}}}}}};
+  Json none_of_a_shape;
+  for (const std::string& name : of_a_shape) none_of_a_shape[name] = false;
+  const Json damping_only = {{"properties", {{"material", {{"properties", none_of_a_shape}}}}}};
+  Json schema;
+  schema["allOf"].push_back({{"if", needs_one}, {"then", full}});
+  schema["allOf"].push_back({{"if", is_given}, {"then", damping_only}});
+  return {check, schema};
 }
 
 }  // namespace sinew::io

@@ -153,18 +153,17 @@ class Walk {
         left_(loads.size()) {}
 
   void run() {
-    for (std::size_t l = loads_.size(); l > 0 && loads_[l - 1].s >= rod_.length(); --l)  // what acts on the very tip
-      tip_.add(shape_.p.back() + shape_.R.back() * loads_[l - 1].offset - shape_.origin, loads_[l - 1]);
+    balance(rod_.length(), shape_.R.back(), shape_.p.back());
     for (int i = rod_.count() - 1; i >= 0; --i) {
-      internal(i, 1, i + 1 == rod_.count() ? tip_ : beyond_, shape_.R[i + 1], shape_.p[i + 1]);
       linalg::with_size(rod_.first[i + 1] - rod_.first[i], [&](auto size) { pass_section<decltype(size)::value>(i); });
-      internal(i, 0, beyond_, shape_.R[i], shape_.p[i]);
+      balance(rod_.sections[i].begin, shape_.R[i], shape_.p[i]);
     }
+    std::reverse(equations_.internal.begin(), equations_.internal.end());
     add_base();
   }
 
  private:
-  void internal(int i, int column, const Beyond& beyond, const Mat3& R, const Vec3& p);
+  void balance(double s, const Mat3& R, const Vec3& p);
   template <int M>
   void pass_section(int i);
   template <int M>
@@ -182,17 +181,21 @@ class Walk {
   Equations& equations_;
   bool symmetric_;
   bool stretches_ = false;  ///< the section's coordinates do
-  Beyond beyond_, tip_;
+  Beyond beyond_;
   std::size_t left_;  ///< loads not yet met
   Branch branch_;     ///< to the loads at hand
 };
 
-void Walk::internal(int i, int column, const Beyond& beyond, const Mat3& R, const Vec3& p) {
-  const Vec3 force = beyond.wrench().tail<3>();
-  const Vec3 moment = beyond.wrench().head<3>() - (p - shape_.origin).cross(force);
-  auto own = equations_.internal.col(2 * i + column);
-  own.head<3>().noalias() = -(R.transpose() * moment);
-  own.tail<3>().noalias() = -(R.transpose() * force);
+/// What the loads met so far need at s; called again there, after more of them, only the base's side of it changes.
+void Walk::balance(double s, const Mat3& R, const Vec3& p) {
+  const Vec3 force = beyond_.wrench().tail<3>();
+  const Vec3 moment = beyond_.wrench().head<3>() - (p - shape_.origin).cross(force);
+  Vec6 own;
+  own << -(R.transpose() * moment), -(R.transpose() * force);
+  const double within = std::clamp(s, 0.0, rod_.length());  // sliding points may be a little off the rod's ends
+  std::vector<Balance>& all = equations_.internal;
+  if (all.empty() || all.back().s != within) all.push_back({within, own, own});
+  all.back().before = own;
 }
 
 template <int M>
@@ -219,11 +222,12 @@ void Walk::meet_loads(int i, int k, bool all) {
     branch_in(shape_, i, k, s, branch_);
     Beyond here;
     const bool slides = loads_[left_ - 1].slide >= 0;
-    for (std::size_t number = 0; left_ > 0 && loads_[left_ - 1].s == s; --left_, ++number) {
-      const PointLoad& load = loads_[left_ - 1];
-      if ((load.slide >= 0) != slides || (slides && number > 0)) break;  // each slide by itself
+    bool jump = false;
+    do {
+      const PointLoad& load = loads_[--left_];
       here.add(branch_.p + branch_.R * load.offset - shape_.origin, load);
-    }
+      jump |= !load.spread;
+    } while (left_ > 0 && loads_[left_ - 1].s == s && !slides && loads_[left_ - 1].slide < 0);  // each slide by itself
     const PartialWeights& weights = branch_.weights;
     const Crossing<M> crossing = cross<M>(branch_.pieces, i, here, weights.value, slides ? &weights : nullptr);
     add(i, k, crossing);
@@ -234,7 +238,9 @@ void Walk::meet_loads(int i, int k, bool all) {
       slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
       slide.second = crossing.second;
     }
+    if (jump) balance(s, branch_.R, branch_.p);
     beyond_.add(here);
+    if (jump) balance(s, branch_.R, branch_.p);
   }
 }
 
@@ -334,7 +340,7 @@ Equations make_equations(const Configuration& shape, bool symmetric, int slides)
   equations.chain.T = shape.twists;
   equations.base.setZero(rod.base_coordinates(), rod.base_coordinates());
   equations.slides.resize(static_cast<std::size_t>(slides));
-  equations.internal.setZero(6, 2 * rod.count());
+  equations.internal.reserve(static_cast<std::size_t>(rod.count()) + 1);
   return equations;
 }
 

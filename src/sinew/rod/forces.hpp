@@ -16,8 +16,9 @@ struct PointLoad {
   double weight = 0.0;         ///< [kg/s^2]
   Vec3 moment = Vec3::Zero();  ///< [N m]
   bool follower = false;
-  bool bends = true;  ///< false: the force has no part in the tangent (a predictor's)
-  int slide = -1;     ///< number among the slides: the abscissa is an unknown, too
+  bool bends = true;    ///< false: the force has no part in the tangent (a predictor's)
+  bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
+  int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
 };
 
 /// What an abscissa s that carries a force f adds to the equations of a rod: f . gamma_qs and f . gamma_ss.
@@ -26,14 +27,20 @@ struct Slide {
   double second = 0.0;
 };
 
+/// Moment [N m] and force [N], in the axes of the cross-section at s, that the loads farther from the base need for
+/// balance: on the base's side of s, and on the tip's. They differ by a concentrated load at s.
+struct Balance {
+  double s = 0.0;
+  Vec6 before = Vec6::Zero(), beyond = Vec6::Zero();
+};
+
 /// The equations of a rod in its coordinates (base, strains), linearised.
 struct Equations {
   Eigen::VectorXd r;     ///< generalised forces
   linalg::Chain chain;   ///< tangent of the strain coordinates
   Eigen::MatrixXd base;  ///< tangent of the base's coordinates among themselves; with the strains: T_b^T V, U^T T_b
   std::vector<Slide> slides;
-  Matrix6X internal;  ///< 6 x 2N: moment [N m] and force [N] at the start and the end of each section, in its own frame
-                      ///< there, that the loads beyond need for balance
+  std::vector<Balance> internal;  ///< from base to tip, at the sections' ends and every concentrated load
 };
 
 /// All zeros. Follower forces and moments make the tangent unsymmetric.

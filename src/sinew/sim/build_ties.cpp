@@ -28,6 +28,27 @@ TieModel& add_tie(Model& model, int coupling, int rod, double s, const rod::Mat3
   return tie;
 }
 
+/// Warns of axes held fast along or about which no coordinate of the rod moves its point at the start: such a row says
+/// nothing there, its force is arbitrary, and a straight rod of fixed length is locked by it.
+void warn_of_idle_rows(Model& model, const TieModel& tie, const std::string& path) {
+  const rod::Configuration shape = start_shape(model.rods[tie.rod]);
+  const rod::Matrix6X twists = rod::twists_at(shape, tie.s);
+  if (tie.s <= 0.0 || twists.cols() == 0) return;
+  const Eigen::Matrix3Xd moves = rod::position_jacobian(shape, tie.s), turns = twists.topRows<3>();
+  const auto warn = [&](const Eigen::Matrix3Xd& by, int axis, const char* how, const char* remedy) {
+    const double most = by.cwiseAbs().maxCoeff();
+    if (most > 0.0 && (tie.holder.R.col(axis).transpose() * by).cwiseAbs().maxCoeff() > 1e-9 * most) return;
+    model.warnings.push_back(path + ": at the start no strain of rods." + model.rods[tie.rod].name +
+                             " and no motion of its base moves the point " + how + " the " +
+                             std::string(1, "xyz"[axis]) + " axis that holds it, so its force there is arbitrary; " +
+                             remedy);
+  };
+  for (const int axis : tie.along)
+    warn(moves, axis, "along", "add `elongation` to the rod's strains, or leave this axis out");
+  for (const int axis : tie.about)
+    warn(turns, axis, "about", "let the rod bend and twist that way, or leave this axis out");
+}
+
 /// Whether the holder's axes move and matter: about any, or along some but not all.
 bool needs_directors(const TieModel& tie) {
   return tie.body() && (!tie.about.empty() || tie.along.size() == 1 || tie.along.size() == 2);
@@ -67,11 +88,13 @@ void build_tie(Model& model, int number, const Tie& tie) {
   const Vec3 position = rod::position(start_shape(model.rods[rod]), s);
   CouplingFacts facts;
   facts.rod = rod;
-  model.couplings.push_back(facts);
   if (tie.solid) {
     const int solid = find(model.scene.solids, *tie.solid, path + ".solid", "solid");
     const solid::EmbeddedPoint where =
         embed_within(model.solids[solid], position, tie.reach, path + ".at", "the point of the rod");
+    facts.outside = where.distance > 0.0 ? 1 : 0;
+    facts.farthest = where.distance;
+    model.couplings.push_back(facts);
     if (along.size() == 3 && about.empty()) {  // an anchor, wherever on the rod
       PointModel point;
       point.line = {rod, -1};
@@ -87,6 +110,7 @@ void build_tie(Model& model, int number, const Tie& tie) {
     tie_axes(model, number, rod, s, solid, position, where, along, about);
     return;
   }
+  model.couplings.push_back(facts);
   const int frame = find_frame(model.scene, tie.frame, path);
   if (tie.other) {
     const int other = find_rod(model, *tie.other, path + ".other");
@@ -107,6 +131,7 @@ void build_tie(Model& model, int number, const Tie& tie) {
   own.frame = frame;
   own.along = along;
   own.about = about;
+  warn_of_idle_rows(model, own, path);
 }
 
 }  // namespace sinew::building

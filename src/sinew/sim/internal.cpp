@@ -5,15 +5,39 @@
 
 namespace sinew {
 
+namespace {
+
+/// Linear between the places where the wrench is known.
+rod::Vec6 needed(const Eigen::MatrixXd& internal, double s) {
+  Eigen::Index next = 0;
+  while (next < internal.cols() && internal(0, next) <= s) ++next;
+  if (next == 0 || next == internal.cols()) return internal.block<6, 1>(1, std::max<Eigen::Index>(next, 1) - 1);
+  const double from = internal(0, next - 1), t = (s - from) / (internal(0, next) - from);
+  return (1.0 - t) * internal.block<6, 1>(7, next - 1) + t * internal.block<6, 1>(1, next);
+}
+
+}  // namespace
+
+Eigen::MatrixXd no_internal(const RodModel& rod) {
+  Eigen::MatrixXd internal = Eigen::MatrixXd::Zero(13, rod.rod.count() + 1 + rod.jumps);
+  internal.row(0).setConstant(-1.0);
+  return internal;
+}
+
+void write_internal(const std::vector<rod::Balance>& along, RodState& state) {
+  Eigen::MatrixXd& internal = state.internal;
+  auto column = internal.cols() - static_cast<Eigen::Index>(along.size());
+  internal.leftCols(column).setZero();
+  internal.row(0).head(column).setConstant(-1.0);
+  for (const rod::Balance& at : along) internal.col(column++) << at.s, at.before, at.beyond;
+}
+
 rod::Vec6 internal_wrench(const Model& model, const State& state, int number, double s) {
   const rod::Rod& rod = model.rods[number].rod;
   const RodState& own = state.rods[number];
-  const int i = rod.section_at(s);
-  const rod::Section& section = rod.sections[i];
-  const double t = std::clamp((s - section.begin) / section.length(), 0.0, 1.0);
-  rod::Vec6 wrench = (1.0 - t) * own.internal.col(2 * i) + t * own.internal.col(2 * i + 1);
+  rod::Vec6 wrench = needed(own.internal, s);
   const rod::Vec6 elastic = rod::stiffness_at(rod.profile, s) * rod::deviation(rod, own.q, s);
-  for (const rod::Mode& mode : section.modes) wrench[mode.strain] = elastic[mode.strain];
+  for (const rod::Mode& mode : rod.sections[rod.section_at(s)].modes) wrench[mode.strain] = elastic[mode.strain];
   return wrench;
 }
 

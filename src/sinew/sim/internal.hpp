@@ -1,12 +1,19 @@
 // Internal forces and stresses of rods.
 #pragma once
 
+#include "sinew/rod/forces.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew {
 
+/// Internal forces as they stand in RodState::internal, with room for every jump the model allows: columns (s, before,
+/// beyond) of rod::Balance, from base to tip; those without use come first, at s = -1.
+Eigen::MatrixXd no_internal(const RodModel& rod);
+void write_internal(const std::vector<rod::Balance>& along, RodState& state);
+
 /// What the part beyond s exerts on the part before: moments [N m] and forces [N] in the axes of the cross-section. Of
-/// free strains by Hooke's law; of the others, which no law knows, what the loads beyond need for balance.
+/// free strains by Hooke's law; of the others, which no law knows, what the loads beyond need for balance. Where a load
+/// is concentrated, its side towards the tip; at the tip itself, the base's.
 rod::Vec6 internal_wrench(const Model& model, const State& state, int rod, double s);
 
 /// The largest stresses of the cross-section at s.

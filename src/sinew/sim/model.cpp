@@ -115,6 +115,20 @@ void number_unknowns(Model& model) {
   number_ties(model);
 }
 
+/// Concentrated loads of each rod: where its internal forces may jump.
+void count_jumps(Model& model) {
+  const auto at = [&model](int rod, int count) {
+    if (rod >= 0) model.rods[rod].jumps += count;
+  };
+  for (const PointModel& point : model.points) at(point.line.rod, 1);
+  for (const TieModel& tie : model.ties) {
+    at(tie.rod, 1);
+    at(tie.other, 1);
+  }
+  for (const LoadModel& load : model.loads) at(load.rod, load.concentrated() ? 1 : 0);
+  for (const ActuatorModel& actuator : model.actuators) at(actuator.line.rod, actuator.tendon ? 2 : 0);
+}
+
 void measure(Model& model) {
   Vec3 lower = Vec3::Constant(INFINITY), upper = -lower;
   for (const SolidModel& solid : model.solids) {
@@ -185,6 +199,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
+  count_jumps(model);
   measure(model);
   const State start = initial_state(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);

@@ -37,6 +37,7 @@ struct RodModel {
   int frame = -1;
   bool floats = false;    ///< the base turns freely in all three directions: turns are counted from the last step on
   int unknown = 0;        ///< first of its base's coordinates in z
+  int jumps = 0;          ///< places, at most, where its internal forces jump
   Eigen::VectorXd start;  ///< coordinates at t = 0
   double path_deviation = 0;  ///< [m] how far the rod's sections stay off the path they were laid along
 };
@@ -123,6 +124,7 @@ struct LoadModel {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< [N], [N m], or per metre
   bool follower = false;
   Drive factor;
+  bool concentrated() const { return at.size() == 1; }
 };
 
 struct OutputModel {

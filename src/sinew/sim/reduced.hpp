@@ -11,9 +11,9 @@ namespace sinew {
 /// Rods at an iterate: the coupled problem, but for the volumes' compliance and free motion. With rows c(z, q, x) = 0
 /// the multipliers stand as L = E - lambda . c, so G = -dc/d(z, q), r += G^T lambda, B -= lambda . c''.
 struct Reduced {
-  solve::CoupledProblem problem;           ///< W still zero
-  std::vector<linalg::Matrix6X> internal;  ///< of each rod, see rod::Equations
-  double largest = 0.0;                    ///< [N] largest unbalanced generalised force, by its lever arm
+  solve::CoupledProblem problem;                    ///< W still zero
+  std::vector<std::vector<rod::Balance>> internal;  ///< of each rod
+  double largest = 0.0;                             ///< [N] largest unbalanced generalised force, by its lever arm
   double scale = 0.0;      ///< [N] what residuals are measured against: the largest of elastic, sliding and motor
                            ///< forces, and of the sums of inertia and weight of a rod
   double violation = 0.0;  ///< [m] largest violation of a row

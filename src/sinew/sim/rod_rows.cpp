@@ -51,6 +51,7 @@ void RodRows::add_masses() {
         ((positions.col(column) - start.masses.col(column)) * rate - start.velocity.col(column)) * rate;
     rod::PointLoad own{mass.s, mass.offset, mass.mass * (acceleration - context_.gravity), mass.mass * rate * rate};
     own.bends = !context_.first_guess;
+    own.spread = true;
     load(own);
     acting += mass.mass * (acceleration.norm() + context_.gravity.norm());
   }
@@ -68,6 +69,7 @@ void RodRows::add_forces() {
       rod::PointLoad point{at.s, Vec3::Zero(), R * (-factor * at.weight * own.force)};
       point.moment = R * (-factor * at.weight * own.moment);
       point.follower = own.follower;
+      point.spread = !own.concentrated();
       load(point);
       acting += point.force.norm() + point.moment.norm() / shape_.rod->length();
     }
@@ -85,11 +87,11 @@ void RodRows::add_tendons(rod::Equations& equations, solve::ChainPart& part) {
     const double tension = actuator.row < 0 ? context_.command.actuators[i] : iterate_.lambda[actuator.row];
     equations.r.tail(rod.strain_coordinates()) += tension * length.gradient;
     equations.chain.D += tension * length.hessian;
-    for (int k = 0; k < rod.count(); ++k) {
-      for (const int end : {0, 1}) {
-        const double s = end == 0 ? rod.sections[k].begin : rod.sections[k].end;
-        equations.internal.col(2 * k + end) -= tension * rod::tendon_wrench(rod, *actuator.tendon, q, k, s);
-      }
+    for (rod::Balance& at : equations.internal) {
+      const int section = rod.section_at(at.s);
+      const auto wrench = [&](int of) { return tension * rod::tendon_wrench(rod, *actuator.tendon, q, of, at.s); };
+      if (at.s < actuator.tendon->to) at.beyond -= wrench(section);
+      if (at.s > actuator.tendon->from) at.before -= wrench(at.s > rod.sections[section].begin ? section : section - 1);
     }
     reduced_.scale = std::max(reduced_.scale, std::abs(tension));
     if (actuator.row < 0) continue;
@@ -124,6 +126,10 @@ void RodRows::finish() {
   const int nb = rod.base_coordinates();
   const auto earlier = [](const rod::PointLoad& a, const rod::PointLoad& b) { return a.s < b.s; };
   add_forces();
+  for (const ActuatorModel& actuator : context_.model.actuators) {
+    if (actuator.line.rod != number_ || !actuator.tendon) continue;
+    for (const double end : {actuator.tendon->from, actuator.tendon->to}) load({end, Vec3::Zero(), Vec3::Zero()});
+  }
   std::stable_sort(loads_.begin(), loads_.end(), earlier);
   const auto sorted = static_cast<std::ptrdiff_t>(loads_.size());
   loads_.reserve(loads_.size() + rod.masses.size());

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "sinew/rod/kinematics.hpp"
+#include "sinew/sim/internal.hpp"
 
 namespace sinew {
 
@@ -29,7 +30,7 @@ State initial_state(const Model& model) {
     const auto shape = rod::configure(rod.rod, rod.base, own.q);
     own.masses = rod::mass_positions(shape);
     own.velocity.setZero(3, own.masses.cols());
-    own.internal.setZero(6, 2 * rod.rod.count());
+    own.internal = no_internal(rod);
   }
   for (const CableModel& cable : model.cables)
     state.cables.push_back({Eigen::VectorXd::Zero(cable.cable.coordinates())});

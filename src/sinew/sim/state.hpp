@@ -13,11 +13,11 @@ struct SolidState {
 };
 
 struct RodState {
-  Eigen::VectorXd q;                                  ///< coordinates of base and strains
-  rod::Mat3 turned = rod::Mat3::Identity();           ///< how far a floating base has turned
-  Eigen::Matrix3Xd masses;                            ///< [m] where the mass points are
-  Eigen::Matrix3Xd velocity;                          ///< [m/s] of the mass points
-  Eigen::Matrix<double, 6, Eigen::Dynamic> internal;  ///< [N m], [N] at both ends of each section, see rod::Equations
+  Eigen::VectorXd q;                         ///< coordinates of base and strains
+  rod::Mat3 turned = rod::Mat3::Identity();  ///< how far a floating base has turned
+  Eigen::Matrix3Xd masses;                   ///< [m] where the mass points are
+  Eigen::Matrix3Xd velocity;                 ///< [m/s] of the mass points
+  Eigen::MatrixXd internal;                  ///< internal forces, see sim/internal.hpp
 };
 
 struct CableState {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/constraint/sliding.hpp"
+#include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
 
@@ -67,8 +68,10 @@ double work(const StepContext& context, const State& next) {
   const Model& model = context.model;
   double sum = 0.0;
   const std::vector<double> before = motor_positions(model, context.start), after = motor_positions(model, next);
-  // What is applied from the start acts in full over the first step.
-  const bool first = context.start.time == 0.0;
+  // What is applied from the start acts in full over the first step. Parts of a step and static paths begin with
+  // nothing.
+  const bool whole = model.scene.analysis != Analysis::statics && context.h > 0.999 * model.scene.time.step;
+  const bool first = context.start.time == 0.0 && whole;
   const Command at_start = command_at(model, context.start.time);
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const bool driven = model.actuators[i].row < 0;
@@ -106,7 +109,7 @@ void finish(const StepContext& context, const Reduced& reduced, State& next) {
     const auto shape = rod::configure(rod, base_of(context, next, static_cast<int>(i)), next.rods[i].q);
     next.rods[i].masses = rod::mass_positions(shape);
     next.rods[i].velocity = (next.rods[i].masses - context.start.rods[i].masses) * context.rate;
-    next.rods[i].internal = reduced.internal[i];
+    write_internal(reduced.internal[i], next.rods[i]);
   }
   for (std::size_t i = 0; i < next.actuators.size(); ++i) {
     const int row = model.actuators[i].row;
