@@ -264,9 +264,9 @@ const std::vector<Broken> table = {
     {"TubeInsideOut", scene("circle: {radius: 0.5 mm}", "tube: {outer: 1 mm, inner: [0.5 mm, 2 mm]}"), "scene.yaml", 17,
      "[0.5 mm, 2 mm]", "must be smaller than `outer`", "the two radii of the wall"},
     {"StiffnessNotSymmetric",
-     scene("circle: {radius: 0.5 mm}",
+     scene("circle: {radius: 0.5 mm}}\n    material: {young: 5 GPa, poisson: 0.4, density: 1100 kg/m^3}",
            "stiffness: {matrix: [[1, 0, 0, 0, 0, 0], [0, 1, 0.5, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], "
-           "[0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]], line_density: 0, radius: 1 mm}"),
+           "[0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]], line_density: 0, radius: 1 mm}}"),
      "scene.yaml", 17, "matrix.2.1 = 0", "must be the same as entry 2 of row 1, 0.5", "same value"},
     {"ViscosityOfAnotherUnit", scene("poisson: 0.4,", "poisson: 0.4, viscosity: 1 Pa,"), "scene.yaml", 18, "1 Pa",
      "must be a viscosity, but 'Pa' is a unit of a pressure", "mPa s, Pa s, kPa s"},

@@ -68,18 +68,37 @@ class At {
   std::shared_ptr<const Key> key_;
 };
 
+/// A function that copies share: types hold types that hold types, and each is held in several closures, so that true
+/// copies would double with every level.
+template <class Signature>
+class Shared;
+template <class R, class... Arguments>
+class Shared<R(Arguments...)> {
+ public:
+  Shared(std::nullptr_t) {}  // NOLINT(google-explicit-constructor): none
+  template <class F>
+  requires std::is_invocable_r_v<R, const F&, Arguments...> Shared(
+      F f)  // NOLINT(google-explicit-constructor): a function is a shared function
+      : function_(std::make_shared<const std::function<R(Arguments...)>>(std::move(f))) {}
+  explicit operator bool() const { return function_ != nullptr; }
+  R operator()(Arguments... arguments) const { return (*function_)(std::forward<Arguments>(arguments)...); }
+
+ private:
+  std::shared_ptr<const std::function<R(Arguments...)>> function_;
+};
+
 template <class V>
 struct Type {
-  std::function<V(const At&)> read;
-  std::function<Json()> schema;
-  std::function<Json(const V&)> show = nullptr;  ///< a default value in the schema; none if not set
+  Shared<V(const At&)> read;
+  Shared<Json()> schema;
+  Shared<Json(const V&)> show = nullptr;  ///< a default value in the schema; none if not set
 };
 
 template <class T>
 struct Field {
   Key key;
-  std::function<void(T&, const At&)> store;
-  std::function<Json()> schema;
+  Shared<void(T&, const At&)> store;
+  Shared<Json()> schema;
 };
 
 /// `access` (member pointer or callable) names what the value is stored in: a V or an optional V.
@@ -100,7 +119,7 @@ Field<T> field(Key key, Access access, Type<V> type) {
 
 /// A condition between the keys of one object, for the reader and for the schema.
 struct Rule {
-  std::function<void(const At&, const std::vector<Key>&)> check;
+  Shared<void(const At&, const std::vector<Key>&)> check;
   Json schema = nullptr;  ///< null: what the schema cannot say
 };
 
@@ -155,8 +174,8 @@ Type<T> map(Object<T> object) {
 template <class V>
 struct Kind {
   Key key;
-  std::function<V(const At&)> read;
-  std::function<Json()> schema;
+  Shared<V(const At&)> read;
+  Shared<Json()> schema;
 };
 
 template <class V, class K>
