@@ -76,9 +76,8 @@ template <class R, class... Arguments>
 class Shared<R(Arguments...)> {
  public:
   Shared(std::nullptr_t) {}  // NOLINT(google-explicit-constructor): none
-  template <class F>
-  requires std::is_invocable_r_v<R, const F&, Arguments...> Shared(
-      F f)  // NOLINT(google-explicit-constructor): a function is a shared function
+  template <class F, class = std::enable_if_t<std::is_invocable_r_v<R, const F&, Arguments...>>>
+  Shared(F f)  // NOLINT(google-explicit-constructor): a function is a shared function
       : function_(std::make_shared<const std::function<R(Arguments...)>>(std::move(f))) {}
   explicit operator bool() const { return function_ != nullptr; }
   R operator()(Arguments... arguments) const { return (*function_)(std::forward<Arguments>(arguments)...); }

@@ -89,7 +89,9 @@ void RodRows::add_tendons(rod::Equations& equations, solve::ChainPart& part) {
     equations.chain.D += tension * length.hessian;
     for (rod::Balance& at : equations.internal) {
       const int section = rod.section_at(at.s);
-      const auto wrench = [&](int of) { return tension * rod::tendon_wrench(rod, *actuator.tendon, q, of, at.s); };
+      const auto wrench = [&](int of) -> rod::Vec6 {
+        return tension * rod::tendon_wrench(rod, *actuator.tendon, q, of, at.s);
+      };
       if (at.s < actuator.tendon->to) at.beyond -= wrench(section);
       if (at.s > actuator.tendon->from) at.before -= wrench(at.s > rod.sections[section].begin ? section : section - 1);
     }
