@@ -17,12 +17,21 @@ std::string list_mm(const std::vector<double>& values) {
   return text + (values.size() > 12 ? ", ..." : "") + " mm";
 }
 
+/// "856 tetrahedra, 120 hexahedra"
+std::string list_cells(const std::map<solid::Kind, int>& kinds) {
+  std::string text;
+  for (const auto& [kind, count] : kinds) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, plural(kind));
+  return text;
+}
+
 void print_solid(const SolidModel& solid) {
   double volume = 0.0;
   for (double v : solid.body.volumes) volume += v;
   const Vec3 size = solid.body.rest.rowwise().maxCoeff() - solid.body.rest.rowwise().minCoeff();
-  fmt::print("solid {}: {} nodes, {} tetrahedra, {} nodes fixed, {} unknowns\n", solid.name, solid.body.nodes(),
-             solid.body.elements(), solid.body.nodes() - solid.body.free_nodes, 3 * solid.body.free_nodes);
+  std::map<solid::Kind, int> kinds;
+  for (const solid::Cell& cell : solid.body.cells) ++kinds[cell.kind];
+  fmt::print("solid {}: {} nodes, {}, {} nodes fixed, {} unknowns\n", solid.name, solid.body.nodes(), list_cells(kinds),
+             (solid.body.unknown.colwise().minCoeff().array() < 0).count(), solid.body.unknowns);
   fmt::print("  {:.4g} x {:.4g} x {:.4g} mm, {:.4g} cm^3, {:.4g} g ({:.4g} kg/m^3)\n", 1e3 * size.x(), 1e3 * size.y(),
              1e3 * size.z(), 1e6 * volume, 1e3 * solid.body.masses.sum(), solid.body.masses.sum() / volume);
 }
@@ -121,13 +130,19 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
 int describe_mesh(const std::filesystem::path& path) {
   const solid::Mesh mesh = io::read_mesh(path);
   const solid::MeshSummary s = solid::summarize(mesh);
-  fmt::print("{}: {} nodes, {} tetrahedra\n", path.string(), s.nodes, s.tetrahedra);
+  fmt::print("{}: {} nodes, {}\n", path.string(), s.nodes, list_cells(s.kinds));
   for (const auto& [kind, count] : s.ignored) fmt::print("  {} cells of kind {} are not used\n", count, kind);
-  if (s.unused_nodes > 0) fmt::print("  {} nodes belong to no tetrahedron\n", s.unused_nodes);
+  if (s.unused_nodes > 0) fmt::print("  {} nodes belong to no cell\n", s.unused_nodes);
+  for (const auto& [name, group] : mesh.groups) {
+    fmt::print("  group {}: {} cells, {} faces, {} nodes\n", name, group.cells.size(), group.faces.size(),
+               group.nodes.size());
+  }
   fmt::print("  from [{:.6g}, {:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}], diagonal {:.6g} (units of the file)\n",
              s.lower.x(), s.lower.y(), s.lower.z(), s.upper.x(), s.upper.y(), s.upper.z(), s.diagonal);
-  fmt::print("  volume {:.6g}; tetrahedra from {:.3g} to {:.3g}; worst shape {:.3g} of 1 (tetrahedron {})\n", s.volume,
-             s.smallest, s.largest, s.worst_quality, s.worst_tetrahedron);
+  fmt::print(
+      "  volume {:.6g}; cells from {:.3g} to {:.3g}; worst shape {:.3g} of 1 (cell {} near {:.4g}, {:.4g}, {:.4g})\n",
+      s.volume, s.smallest, s.largest, s.worst_quality, s.worst_cell, s.worst_centre.x(), s.worst_centre.y(),
+      s.worst_centre.z());
   if (s.diagonal > 10.0) fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
   return kDone;
 }

@@ -43,7 +43,7 @@ Json sizes_json(const Model& model) {
   Json solids = Json::object(), rods = Json::object();
   for (const SolidModel& solid : model.solids) {
     solids[solid.name] = {
-        {"nodes", solid.body.nodes()}, {"tetrahedra", solid.body.elements()}, {"free_nodes", solid.body.free_nodes}};
+        {"nodes", solid.body.nodes()}, {"cells", solid.body.elements()}, {"unknowns", solid.body.unknowns}};
   }
   int unknowns = model.unknowns;
   for (const RodModel& rod : model.rods) {

@@ -160,8 +160,8 @@ TEST(Run, ReportsWhatItDid) {
   EXPECT_EQ(report["inputs"][1]["file"], "finger.vtk");
   EXPECT_EQ(report["inputs"][1]["xxh3_128"].get<std::string>().size(), 32u);
   EXPECT_EQ(report["sizes"]["solids"]["finger"]["nodes"], 284);
-  EXPECT_EQ(report["sizes"]["solids"]["finger"]["tetrahedra"], 856);
-  EXPECT_EQ(report["sizes"]["solids"]["finger"]["free_nodes"], 272);
+  EXPECT_EQ(report["sizes"]["solids"]["finger"]["cells"], 856);
+  EXPECT_EQ(report["sizes"]["solids"]["finger"]["unknowns"], 816);
   EXPECT_EQ(report["sizes"]["rods"]["cable"]["sections"], 6);
   EXPECT_NEAR(report["sizes"]["rods"]["cable"]["length_m"].get<double>(), 0.09, 1e-15);
   EXPECT_EQ(report["sizes"]["sliding_points"], 3);

@@ -1,7 +1,7 @@
 // libFuzzer target for the mesh readers: whatever the bytes, a mesh or an InputError. Not part of the normal build:
 //
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -Isrc -I/usr/include/eigen3
-//     tests/fuzz/mesh_fuzz.cpp src/sinew/io/{byte_cursor,mesh_*,vtk_*,vtu_*}.cpp src/sinew/solid/mesh*.cpp
+//     tests/fuzz/mesh_fuzz.cpp src/sinew/io/{byte_cursor,mesh_*,vtk_*,vtu_*}.cpp src/sinew/solid/{element,mesh*}.cpp
 //     src/sinew/error/*.cpp -lfmt -lpugixml -lz -o mesh_fuzz
 //   ./mesh_fuzz -rss_limit_mb=512 corpus/        (start the corpus from small files of every format)
 #include <cstddef>
@@ -13,17 +13,28 @@
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/solid/mesh_summary.hpp"
 
+namespace {
+
+void expect(bool condition) {
+  if (!condition) std::abort();
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     const sinew::solid::Mesh mesh = sinew::io::parse_mesh(bytes, "fuzz");
     // A mesh that was accepted is usable: these index it without any check of their own.
     const sinew::solid::MeshSummary summary = sinew::solid::summarize(mesh);
-    if (!(summary.smallest > 0.0) || sinew::solid::surface(mesh.tetrahedra).size() > 4 * mesh.tetrahedra.size()) {
-      std::abort();
+    expect(summary.smallest > 0.0 && sinew::solid::boundary(mesh.cells).size() <= 6 * mesh.cells.size());
+    for (const auto& [name, group] : mesh.groups) {
+      expect(!name.empty() && !group.nodes.empty());
+      for (const int cell : group.cells) expect(cell >= 0 && static_cast<std::size_t>(cell) < mesh.cells.size());
+      for (const int node : group.nodes) expect(node >= 0 && node < mesh.nodes.cols());
     }
   } catch (const sinew::InputError& error) {
-    if (error.fault().rule.empty() || error.fault().remedy.empty()) std::abort();
+    expect(!error.fault().rule.empty() && !error.fault().remedy.empty());
   }
   return 0;
 }

@@ -168,4 +168,61 @@ actuators:
   bend: {rod: cable, angle: {times: [0, 1], values: [0, 1]}}
 )";
 
+inline constexpr const char* solids_scene = R"(# Solids of every law, held and loaded by every kind of region.
+frames:
+  grip: {motion: {times: [0, 1], translate: [[0, 0, 0], [5 mm, 0, 0]]}}
+solids:
+  finger:
+    mesh: finger.vtu
+    material: {law: ogden, mu: [63 kPa, 0.12 kPa, -1 kPa], alpha: [1.3, 5, -2], bulk: 2 MPa, viscosity: 30 Pa s, density: 1100}
+    mass_matrix: consistent
+    parts:
+      - {box: [[0, 0, 0], [1 mm, 1 mm, 1 mm]], in: world, material: {law: neo_hookean, young: 5 MPa, poisson: 0.4, density: 1300}}
+      - {sphere: {center: [0, 0, 10 mm], radius: 5 mm}, material: {law: mooney_rivlin, c10: 80 kPa, c01: 20 kPa, bulk: 5 MPa}}
+      - {plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 0.1 mm}, material: {law: mooney_rivlin, c10: 80 kPa, c01: 20 kPa, poisson: 0.45}}
+      - {nodes: [0, 3, 17], material: {law: ogden, mu: [1 MPa], alpha: [2], poisson: 0.45, viscosity: 1 Pa s}}
+      - {group: base, material: {law: saint_venant_kirchhoff, young: 5 MPa, poisson: 0.4}}
+      - {surface: true, material: {young: 5 MPa, poisson: 0.4}}
+    fixed:
+      - {box: [[0, 0, 0], [1 mm, 1 mm, 1 mm]], in: world, axes: [x, z], frame: grip}
+      - {sphere: {center: [0, 0, 10 mm], radius: 5 mm}}
+      - {plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 0.1 mm}}
+      - {nodes: [0, 3, 17]}
+      - {group: base}
+      - {surface: true}
+    springs:
+      - {box: [[0, 0, 0], [1 mm, 1 mm, 1 mm]], in: world, stiffness: [1 N/m, 0, 20 N/m]}
+      - {sphere: {center: [0, 0, 10 mm], radius: 5 mm}, stiffness: [1 N/m, 0, 20 N/m]}
+      - {plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 0.1 mm}, stiffness: [1 N/m, 0, 20 N/m]}
+      - {nodes: [0, 3, 17], stiffness: [1 N/m, 0, 20 N/m]}
+      - {group: base, stiffness: [1 N/m, 0, 20 N/m]}
+      - {surface: true, stiffness: [1 N/m, 0, 20 N/m]}
+  rubber:
+    mesh: block.msh
+    material: {law: mooney_rivlin, c10: 80 kPa, c01: 20 kPa, poisson: 0.45}
+    density: 1000
+    fixed: {group: "7"}
+  ball: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {sphere: {center: [0, 0, 0], radius: 1 mm}, axes: [x], frame: grip}}
+  plate: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 1 mm}}}
+  pin: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {nodes: [1, 2, 3]}}
+  skin: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {surface: true}}
+loads:
+  load0: {solid: finger, box: [[0, 0, 0], [1 mm, 1 mm, 1 mm]], in: world, force: [0, 0, -1 N], factor: external}
+  load1: {solid: finger, sphere: {center: [0, 0, 10 mm], radius: 5 mm}, pressure: -20 kPa}
+  load2: {solid: finger, plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 0.1 mm}, force: [1 N, 0, 0], pressure: 5 kPa}
+  load3: {solid: finger, nodes: [0, 3, 17], force: [0, 1 N, 0], factor: {times: [0, 1], values: [0, 2]}}
+  load4: {solid: finger, group: base, pressure: 1 Pa}
+  load5: {solid: finger, surface: true, pressure: 1 Pa}
+outputs:
+  held0: {solid: finger, quantity: reaction, region: {box: [[0, 0, 0], [1 mm, 1 mm, 1 mm]], in: world}}
+  held1: {solid: finger, quantity: reaction, region: {sphere: {center: [0, 0, 10 mm], radius: 5 mm}}}
+  held2: {solid: finger, quantity: reaction, region: {plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 0.1 mm}}}
+  held3: {solid: finger, quantity: reaction, region: {nodes: [0, 3, 17]}}
+  held4: {solid: finger, quantity: reaction, region: {group: base}}
+  held5: {solid: finger, quantity: reaction, region: {surface: true}}
+  all: {solid: finger, quantity: reaction}
+  moved: {solid: finger, point: [0, 0, 0], quantity: displacement}
+  bent: {solid: finger, point: [0, 0, 0], quantity: strain}
+)";
+
 }  // namespace sinew::io

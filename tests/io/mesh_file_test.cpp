@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "io/mesh_faults.hpp"
 #include "io/mesh_writers.hpp"
 #include "sinew/error/input_error.hpp"
 #include "sinew/solid/mesh_summary.hpp"
@@ -20,66 +21,10 @@ namespace {
 using samples::Form;
 using testing::HasSubstr;
 
-struct File {
-  std::string name;
-  std::string bytes;
-};
+using samples::all_files;
+using samples::File;
 
-/// Every format in every form.
-std::vector<File> all_files() {
-  std::vector<File> files;
-  for (const bool text : {true, false}) {
-    const Form form = text ? Form::text : Form::binary;
-    const std::string kind = text ? "_text" : "_binary";
-    files.push_back({"vtk2" + kind + ".vtk", samples::legacy_vtk(form, false)});
-    files.push_back({"vtk5" + kind + ".vtk", samples::legacy_vtk(form, true)});
-    files.push_back({"gmsh2" + kind + ".msh", samples::gmsh_2(form)});
-    files.push_back({"gmsh4" + kind + ".msh", samples::gmsh_4(form)});
-  }
-  files.push_back({"gmsh2_big.msh", samples::gmsh_2(Form::binary, std::endian::big)});
-  files.push_back({"gmsh4_big.msh", samples::gmsh_4(Form::binary, std::endian::big)});
-  files.push_back({"ascii.vtu", samples::vtu({})});
-  for (const char* format : {"binary", "appended"}) {
-    for (const char* encoding : {"raw", "base64"}) {
-      for (int i = 0; i < 8; ++i) {
-        const samples::VtuForm form = {.format = format,
-                                       .encoding = encoding,
-                                       .compressed = (i & 1) != 0,
-                                       .wide = (i & 2) != 0,
-                                       .order = (i & 4) != 0 ? std::endian::big : std::endian::little};
-        files.push_back({fmt::format("{}_{}_{}.vtu", format, encoding, i), samples::vtu(form)});
-      }
-    }
-  }
-  return files;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  if (at == std::string::npos) throw std::logic_error("the test replaces what is not there: " + what);
-  return text.replace(at, what.size(), by);
-}
-
-/// The fault that reading these bytes ends with; an empty one, and a failed test, if they are accepted.
-InputFault fault_of(const std::string& bytes) {
-  try {
-    parse_mesh(bytes, "mesh");
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.fault().file, "mesh");
-    EXPECT_FALSE(error.fault().rule.empty());
-    EXPECT_FALSE(error.fault().remedy.empty());
-    return error.fault();
-  }
-  ADD_FAILURE() << "accepted";
-  return {};
-}
-
-void expect_fault(const std::string& bytes, int line, const std::string& value, const std::string& rule) {
-  const InputFault fault = fault_of(bytes);
-  EXPECT_EQ(fault.line, line) << to_string(fault);
-  EXPECT_THAT(fault.value, HasSubstr(value));
-  EXPECT_THAT(fault.rule, HasSubstr(rule));
-}
+const std::vector<solid::Cell> kTwoTetrahedra = {{solid::Kind::tet4, {0, 1, 2, 3}}, {solid::Kind::tet4, {1, 2, 3, 4}}};
 
 class Folder : public testing::Test {
  protected:
@@ -103,8 +48,9 @@ TEST_F(ReadMesh, ReadsTheSameMeshFromEveryFormat) {
     SCOPED_TRACE(file.name);
     const solid::Mesh mesh = read_mesh(write(file));
     ASSERT_EQ(mesh.nodes.cols(), 5);
-    EXPECT_EQ(mesh.nodes, Eigen::Map<const Eigen::Matrix3Xd>(samples::coordinates.data(), 3, 5));
-    EXPECT_EQ(mesh.tetrahedra, (std::vector<solid::Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
+    EXPECT_EQ(mesh.nodes, Eigen::Map<const Eigen::Matrix3Xd>(samples::two_tetrahedra.coordinates.data(), 3, 5));
+    EXPECT_EQ(mesh.cells, kTwoTetrahedra);
+    EXPECT_TRUE(mesh.groups.empty());
     EXPECT_EQ(mesh.ignored, (std::map<std::string, int>{{"triangle", 1}, {"vertex", 1}}));
   }
 }
@@ -115,7 +61,9 @@ TEST(ParseMesh, JoinsThePiecesOfAVtu) {
   const solid::Mesh mesh = parse_mesh(text.substr(0, end) + text.substr(begin), "mesh");
   EXPECT_EQ(mesh.nodes.cols(), 10);
   EXPECT_EQ(mesh.nodes.leftCols(5), mesh.nodes.rightCols(5));
-  EXPECT_EQ(mesh.tetrahedra, (std::vector<solid::Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}, {5, 6, 7, 8}, {6, 7, 8, 9}}));
+  ASSERT_EQ(mesh.cells.size(), 4u);
+  EXPECT_EQ(mesh.cells[1], kTwoTetrahedra[1]);
+  EXPECT_EQ(mesh.cells[3], (solid::Cell{solid::Kind::tet4, {6, 7, 8, 9}}));
   EXPECT_EQ(mesh.ignored.at("triangle"), 2);
 }
 
@@ -127,7 +75,7 @@ TEST(ParseMesh, ReadsManyElementsBehindOneHeadOfABinaryGmshFile) {
   const std::string start = text.substr(0, text.find("$Elements")) + "$Elements\n3\n" + ints({15, 1, 0, 1, 7});
   const std::string elements = ints({4, 2, 1}) + ints({2, 9, 7, 3, 100, 5}) + ints({3, 9, 3, 100, 5, 2});
   const solid::Mesh mesh = parse_mesh(start + elements + "\n$EndElements\n", "mesh");
-  EXPECT_EQ(mesh.tetrahedra, (std::vector<solid::Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
+  EXPECT_EQ(mesh.cells, kTwoTetrahedra);
   expect_fault(start + replaced(elements, ints({4, 2, 1}), ints({4, 3, 1})), 0, "3", "at most the 2 elements left");
   expect_fault(start + replaced(elements, ints({4, 2, 1}), ints({4, 2, -1})), 0, "-1", "number of tags");
 }
@@ -163,17 +111,19 @@ TEST_F(ReadMesh, RefusesWhatIsNoMeshFile) {
 
 TEST(ReadShippedMesh, FindsTheFingerAndTheTrunk) {
   const std::filesystem::path folder = std::filesystem::path(SINEW_SOURCE_DIR) / "examples/meshes";
-  const solid::MeshSummary finger = solid::summarize(read_mesh(folder / "finger.vtk"));
+  const solid::Mesh finger_mesh = read_mesh(folder / "finger.vtk");
+  EXPECT_EQ(finger_mesh.cells.size(), 856u);
+  const solid::MeshSummary finger = solid::summarize(finger_mesh);
   EXPECT_EQ(finger.nodes, 284);
-  EXPECT_EQ(finger.tetrahedra, 856);
   EXPECT_EQ(finger.unused_nodes, 0);
   EXPECT_EQ(finger.lower, Eigen::Vector3d(0, -7.5, -7.5));
   EXPECT_EQ(finger.upper, Eigen::Vector3d(95, 7.5, 7.5));
   // Profile: 95 x 15 less the bevel and five gaps, 5 wide below and 8 above, 10.5 deep; extruded by 15.
   EXPECT_NEAR(finger.volume, 15 * (95 * 15 - 12.5 - 5 * 6.5 * 10.5), 1e-3);
   EXPECT_GT(finger.worst_quality, 0.5);
-  const solid::MeshSummary trunk = solid::summarize(read_mesh(folder / "trunk.vtk"));
-  EXPECT_EQ(trunk.tetrahedra, 1834);
+  const solid::Mesh trunk_mesh = read_mesh(folder / "trunk.vtk");
+  EXPECT_EQ(trunk_mesh.cells.size(), 1834u);
+  const solid::MeshSummary trunk = solid::summarize(trunk_mesh);
   EXPECT_GT(trunk.worst_quality, 0.5);
 }
 
@@ -182,9 +132,10 @@ TEST(ReadForeignMesh, FindsAllCellsOfAFileOfMixedCells) {
   if (!std::filesystem::exists(path)) return;  // its own mesh of mixed cells is in the tests above
   const solid::Mesh mesh = read_mesh(path);
   EXPECT_EQ(mesh.nodes.cols(), 158);
-  EXPECT_EQ(mesh.tetrahedra.size(), 389u);
+  EXPECT_EQ(mesh.cells.size(), 389u);
+  EXPECT_TRUE(mesh.groups.empty());
   EXPECT_EQ(mesh.ignored, (std::map<std::string, int>{{"vertex", 26}, {"line", 88}, {"triangle", 306}}));
-  EXPECT_EQ(solid::surface(mesh.tetrahedra).size(), 306u);
+  EXPECT_EQ(solid::surface(mesh.cells).size(), 306u);
 }
 
 /// How much of a file the mesh needs: what comes later may be missing.
@@ -304,11 +255,11 @@ TEST(ParseMesh, SaysWhereInAGmshFileTheFaultIs) {
   expect_fault(replaced(two, "2.2 0", "4.0 0"), 2, "4.0", "2.2 or 4.1");
   expect_fault(replaced(two, "2.2 0 8", "2.2 2 8"), 2, "2", "0 (text) or 1 (binary)");
   expect_fault(replaced(two, "2.2 0 8", "2.2 0 4"), 2, "4", "must be 8");
-  expect_fault(replaced(two, "$EndPhysicalNames", "$End"), 4, "$PhysicalNames", "must end with");
+  expect_fault(replaced(two, "$EndPhysicalNames", "$End"), 7, "$End", "$EndPhysicalNames must stand here");
   expect_fault(replaced(two, "$Nodes\n5", "$Nodes\n4"), 18, "\"2\"", "$EndNodes");
   expect_fault(replaced(two, "$Nodes\n5", "$Nodes\n6"), 21, "\"$EndNodes\"", "whole number");
   expect_fault(replaced(two, "1.25", "inf"), 19, "inf", "finite");
-  expect_fault(replaced(two, "2 4 2 1 1", "2 40 2 1 1"), 26, "40", "element type");
+  expect_fault(replaced(two, "2 4 2 0 1", "2 40 2 0 1"), 26, "40", "element type");
   expect_fault(replaced(two, "7 3 100 5", "7 3 100 6"), 26, "node tag 6", "must be in $Nodes");
   expect_fault(replaced(two, "\n100 \n", "\n7 \n"), 14, "node tag 7", "one node only");
   expect_fault(replaced(four, "$Nodes\n2 5", "$Nodes\n2 6"), 9, "6", "must be 5");
@@ -329,40 +280,30 @@ TEST(ParseMesh, FindsNumbersThatAreNotFiniteInBinaryFiles) {
 
 solid::Mesh two_tetrahedra() { return parse_mesh(samples::vtu({}), "mesh"); }
 
-InputFault check_fault(const solid::Mesh& mesh) {
-  try {
-    check_mesh(mesh, "mesh");
-  } catch (const InputError& error) {
-    return error.fault();
-  }
-  ADD_FAILURE() << "accepted";
-  return {};
-}
-
-TEST(CheckMesh, WantsATetrahedron) {
+TEST(CheckMesh, WantsACell) {
   solid::Mesh mesh = two_tetrahedra();
-  mesh.tetrahedra.clear();
+  mesh.cells.clear();
   const InputFault fault = check_fault(mesh);
   EXPECT_EQ(fault.value, "1 triangle, 1 vertex");
-  EXPECT_THAT(fault.rule, HasSubstr("at least one linear tetrahedron"));
+  EXPECT_THAT(fault.rule, HasSubstr("at least one tetrahedron with 4 or 10 nodes"));
 }
 
 TEST(CheckMesh, WantsNodeNumbersInRange) {
   for (const int node : {-1, 5}) {
     solid::Mesh mesh = two_tetrahedra();
-    mesh.tetrahedra[1][2] = node;
+    mesh.cells[1].node[2] = node;
     EXPECT_EQ(check_fault(mesh).value, std::to_string(node));
   }
 }
 
 TEST(CheckMesh, NamesTheElementOfNegativeVolume) {
   solid::Mesh mesh = two_tetrahedra();
-  std::swap(mesh.tetrahedra[1][0], mesh.tetrahedra[1][1]);
+  std::swap(mesh.cells[1].node[0], mesh.cells[1].node[1]);
   const InputFault one = check_fault(mesh);
   EXPECT_THAT(one.value, HasSubstr("volume -0.375 of tetrahedron 1 (0-based"));
   EXPECT_THAT(one.rule, HasSubstr("1 of 2 do not"));
   EXPECT_THAT(one.remedy, HasSubstr("reorder"));
-  std::swap(mesh.tetrahedra[0][0], mesh.tetrahedra[0][1]);
+  std::swap(mesh.cells[0].node[0], mesh.cells[0].node[1]);
   EXPECT_THAT(check_fault(mesh).remedy, HasSubstr("all are the wrong way round"));
 }
 
@@ -373,11 +314,11 @@ TEST(CheckMesh, JudgesAVolumeBySizeOfTheElement) {
     scaled.nodes *= scale;
     EXPECT_NO_THROW(check_mesh(scaled, "mesh"));
     scaled.nodes(2, 3) = 2e-11 * scale;  // volume 3.3e-12, edge cubed 2.8
-    EXPECT_NO_THROW(check_mesh({scaled.nodes, {{0, 1, 2, 3}}, {}}, "mesh"));
+    EXPECT_NO_THROW(check_mesh({scaled.nodes, {kTwoTetrahedra[0]}, {}, {}}, "mesh"));
     scaled.nodes(2, 3) = 1e-11 * scale;
-    EXPECT_THROW(check_mesh({scaled.nodes, {{0, 1, 2, 3}}, {}}, "mesh"), InputError);
+    EXPECT_THROW(check_mesh({scaled.nodes, {kTwoTetrahedra[0]}, {}, {}}, "mesh"), InputError);
   }
-  mesh.tetrahedra[0] = {0, 1, 2, 2};
+  mesh.nodes.col(3) = mesh.nodes.col(2);
   EXPECT_THAT(check_fault(mesh).value, HasSubstr("volume 0 of tetrahedron 0"));
 }
 

@@ -14,6 +14,7 @@
 #include "sinew/io/append_file.hpp"
 #include "sinew/io/color_map.hpp"
 #include "sinew/io/picture_page.hpp"
+#include "sinew/io/picture_shapes.hpp"
 #include "sinew/io/readable.hpp"
 
 namespace sinew::io {
@@ -218,7 +219,7 @@ TEST_F(Picture, size_and_place_change_nothing_but_the_labels) {
   }
 }
 
-TEST_F(Picture, stress_is_that_of_the_tetrahedron_behind_each_face) {
+TEST_F(Picture, stress_is_that_of_the_cell_behind_each_face) {
   Snapshot rest;
   SolidSnapshot solid;
   solid.rest.resize(3, 5);
@@ -226,7 +227,7 @@ TEST_F(Picture, stress_is_that_of_the_tetrahedron_behind_each_face) {
       0, 0, 1, 0, 0,             //
       0, 0, 0, 1, 0;
   solid.nodes = solid.rest;
-  solid.tetrahedra = {{3, 2, 1, 0}, {4, 0, 3, 2}};
+  solid.cells = {{solid::Kind::tet4, {3, 2, 1, 0}}, {solid::Kind::tet4, {4, 0, 3, 2}}};
   solid.surface = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 4, 2}, {2, 4, 3}, {4, 0, 3}};
   solid.von_mises.resize(2);
   solid.von_mises << 0.0, 5e3;
@@ -238,6 +239,60 @@ TEST_F(Picture, stress_is_that_of_the_tetrahedron_behind_each_face) {
   const auto green = [&](const Vec3& p) { return static_cast<int>(image.at(p.x(), p.y()) >> 8 & 255); };
   EXPECT_LT(green(low), 80);                // purple
   EXPECT_GT(green(high), green(low) + 60);  // yellow
+}
+
+/// A cube and on its face x = 1 a 10-node tetrahedron, which does not fit to it: both surfaces are whole.
+SolidSnapshot cube_and_tetrahedron() {
+  SolidSnapshot solid;
+  solid.rest.resize(3, 18);
+  solid.rest.leftCols(12) << 0, 1, 1, 0, 0, 1, 1, 0, 1, 2, 1, 1,  //
+      0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 0,                         //
+      0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1;
+  const int edges[6][2] = {{8, 9}, {9, 10}, {10, 8}, {8, 11}, {9, 11}, {10, 11}};
+  for (int e = 0; e < 6; ++e) solid.rest.col(12 + e) = (solid.rest.col(edges[e][0]) + solid.rest.col(edges[e][1])) / 2;
+  solid.nodes = solid.rest;
+  solid.cells = {{solid::Kind::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
+                 {solid::Kind::tet10, {8, 9, 10, 11, 12, 13, 14, 15, 16, 17}}};
+  solid.surface = solid::surface(solid.cells);
+  solid.von_mises.resize(2);
+  solid.von_mises << 1e3, 5e3;
+  return solid;
+}
+
+TEST(PictureShapes, have_the_stress_of_the_cell_behind_whatever_its_kind) {
+  const SolidSnapshot solid = cube_and_tetrahedron();
+  ASSERT_EQ(solid.surface.size(), 6u * 2 + 4u * 4);
+  const std::vector<double> values = surface_values(solid, PictureColor::von_mises);
+  ASSERT_EQ(values.size(), 3 * solid.surface.size());
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], solid.surface[i / 3][0] < 8 ? 1e3 : 5e3) << i;
+}
+
+TEST_F(Picture, shows_edges_of_cells_and_none_within_their_faces) {
+  const SolidSnapshot solid = cube_and_tetrahedron();
+  const PictureView view{.middle = {100, 300}, .scale = 150.0};  // from above
+  Raster raster({0, 0, 400, 400}, viridis_palette());
+  add_surface(raster, solid.nodes, solid, {}, {}, view, 0.5);
+  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 400, 400);
+  cairo_t* page = cairo_create(surface);
+  raster.paint(page, {.width = 0.0});
+  cairo_surface_write_to_png(surface, png_.c_str());
+  cairo_destroy(page);
+  cairo_surface_destroy(surface);
+  const Image image(png_);
+  const auto blue = [&](const Vec3& point) {
+    const Vec3 place = view.project(point);
+    return static_cast<int>(image.at(place.x(), place.y()) & 255);
+  };
+  const auto node = [&](int i) -> Vec3 { return solid.nodes.col(i); };
+  const int top = blue(Vec3(0.7, 0.3, 1));
+  EXPECT_GT(top, 40);
+  EXPECT_EQ(blue(Vec3(0.5, 0.5, 1)), top);            // the diagonal
+  EXPECT_LT(blue(Vec3(0.5, 0.001, 1)), top * 3 / 4);  // the rim
+  const int slope = blue((node(9) + node(13) + node(16)) / 3);
+  EXPECT_GT(slope, 40);
+  EXPECT_EQ(blue((node(13) + node(16)) / 2), slope);
+  EXPECT_EQ(blue((node(13) + node(17)) / 2), slope);
+  EXPECT_LT(blue(0.5 * node(9) + 0.5 * node(13) - Vec3(0.001, 0.001, 0)), slope * 3 / 4);
 }
 
 TEST_F(Picture, rods_alone_are_coloured_by_what_they_moved) {
@@ -273,7 +328,7 @@ TEST_F(Picture, takes_whatever_numbers_there_are) {
     end.rods[0].radius.setConstant(bad);
     end.solids[0].rest = end.solids[0].nodes;
     draw(end, end, {.title = "", .up = Vec3(bad, 0, bad)});
-    end.solids[0].tetrahedra = {{0, 1, 2, 3}, {0, 3, 2, 5}};
+    end.solids[0].cells = {{solid::Kind::tet4, {0, 1, 2, 3}}, {solid::Kind::tet4, {0, 3, 2, 5}}};
     end.solids[0].von_mises = Eigen::VectorXd::Constant(2, bad);
     draw(rest, end, {.title = "", .color = PictureColor::von_mises});
   }
@@ -296,7 +351,7 @@ TEST_F(Picture, takes_objects_that_do_not_fit_together) {
   end.solids[0].surface.push_back({-1, 5, 100000});
   end.solids[0].rest.resize(3, 4);
   end.solids[0].von_mises = Eigen::VectorXd::Ones(2);
-  end.solids[0].tetrahedra = {{0, 1, 2, 900}, {-7, 1, 2, 3}};
+  end.solids[0].cells = {{solid::Kind::tet4, {0, 1, 2, 900}}, {solid::Kind::hex8, {-7, 1, 2, 3}}};
   end.rods.push_back({});
   end.rods[0].points.conservativeResize(3, 1);
   for (const auto color : {PictureColor::displacement, PictureColor::von_mises})

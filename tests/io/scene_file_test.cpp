@@ -59,17 +59,17 @@ TEST(SceneFile, ReadsSolids) {
   EXPECT_EQ(finger.pose.rotate, Vec3::Zero().eval());
   EXPECT_EQ(finger.pose.translate, Vec3(0, 0.002, 0));
   EXPECT_EQ(finger.frame, "hand");
-  EXPECT_EQ(finger.material.law, Law::corotational);
-  EXPECT_EQ(finger.material.young, 600e3);
-  EXPECT_EQ(finger.material.poisson, 0.45);
+  const auto& law = std::get<solid::Corotational>(finger.material.law);
+  EXPECT_EQ(law.young, 600e3);
+  EXPECT_EQ(law.poisson, 0.45);
   EXPECT_EQ(finger.mass, 0.075);
   EXPECT_FALSE(finger.density);
   EXPECT_EQ(finger.rayleigh.mass, 0.1);
   EXPECT_EQ(finger.rayleigh.stiffness, 0.1);
   ASSERT_EQ(finger.fixed.size(), 1u);
-  EXPECT_EQ(finger.fixed[0].lower, Vec3(-0.015, 0, 0));
-  EXPECT_EQ(finger.fixed[0].upper, Vec3(0.005, 0.01, 0.015));
-  EXPECT_EQ(finger.fixed[0].in, In::object);
+  EXPECT_EQ(std::get<Box>(finger.fixed[0].region).lower, Vec3(-0.015, 0, 0));
+  EXPECT_EQ(std::get<Box>(finger.fixed[0].region).upper, Vec3(0.005, 0.01, 0.015));
+  EXPECT_EQ(std::get<Box>(finger.fixed[0].region).in, In::object);
 
   const Solid& block = scene.solids[1].second;
   EXPECT_EQ(block.scale, 1.0);
@@ -77,8 +77,9 @@ TEST(SceneFile, ReadsSolids) {
   EXPECT_FALSE(block.mass);
   EXPECT_EQ(block.density, 1100.0);
   ASSERT_EQ(block.fixed.size(), 2u);
-  EXPECT_EQ(block.fixed[0].in, In::world);
-  EXPECT_EQ(block.fixed[1].upper, Vec3(0, 0.001, 0.001));  // a flat box is a region: a face of the mesh
+  EXPECT_EQ(std::get<Box>(block.fixed[0].region).in, In::world);
+  EXPECT_EQ(std::get<Box>(block.fixed[1].region).upper,
+            Vec3(0, 0.001, 0.001));  // a flat box is a region: a face of the mesh
 }
 
 TEST(SceneFile, ReadsRodsAndCouplings) {
@@ -178,12 +179,12 @@ TEST(SceneFile, OverridesReplaceValues) {
                                          "newton=3", "rods.thread.up=[0, 1, 0]", "solids.block.fixed.1.in=world",
                                          "actuators.extra={rod: cable, force: 1 N}", "time.step=5 ms"})
                           .scene;
-  EXPECT_EQ(scene.solids[0].second.material.young, 500e3);
+  EXPECT_EQ(std::get<solid::Corotational>(scene.solids[0].second.material.law).young, 500e3);
   EXPECT_EQ(std::get<int>(std::get<Slide>(scene.couplings[0]).points), 31);
   EXPECT_EQ(scene.newton.iterations, 3);
   EXPECT_EQ(scene.newton.limit, Newton{}.limit);
   EXPECT_EQ(scene.rods[1].second.up, Vec3(0, 1, 0));
-  EXPECT_EQ(scene.solids[1].second.fixed[1].in, In::world);
+  EXPECT_EQ(std::get<Box>(scene.solids[1].second.fixed[1].region).in, In::world);
   EXPECT_EQ(scene.actuators.back().first, "extra");
   EXPECT_EQ(scene.time.step, 0.005);
   EXPECT_EQ(parse(other_scene, {"time.step=5 ms"}).scene.time.step, 0.005);  // the file has no `time`
@@ -194,7 +195,8 @@ TEST(SceneFile, FaultsInOverridesSaySo) {
   EXPECT_EQ(fault.file, "--set");
   EXPECT_EQ(fault.line, 0);
   EXPECT_EQ(fault.path, "solids.finger.material.yung");
-  EXPECT_EQ(fault.remedy, "did you mean `young`? known here: law, young, poisson");
+  EXPECT_EQ(fault.remedy,
+            "did you mean `young`? known here: law, young, poisson, c10, c01, mu, alpha, bulk, viscosity, density");
   fault = fault_of(full_scene, {"solids.finger.material.young=-5"});
   EXPECT_EQ(to_string(fault).substr(0, to_string(fault).find('\n')),
             "--set: solids.finger.material.young = -5: must be greater than 0 Pa");

@@ -224,7 +224,7 @@ TEST(SceneRods, ReadsAxesAndTendons) {
 TEST(SceneRods, ReadsLoads) {
   const Scene scene = parse(rods_scene);
   ASSERT_EQ(scene.loads.size(), 4u);
-  const Load& weight = at(scene.loads, 0, "weight");
+  const RodLoad& weight = std::get<RodLoad>(at(scene.loads, 0, "weight"));
   EXPECT_EQ(weight.rod, "spine");
   EXPECT_FALSE(weight.at || weight.from || weight.to);
   EXPECT_EQ(weight.force, Vec3(0, 0, -1));
@@ -232,20 +232,20 @@ TEST(SceneRods, ReadsLoads) {
   EXPECT_FALSE(weight.follower);
   EXPECT_EQ(std::get<Table>(weight.factor).values, std::vector<double>{1});
 
-  const Load& wind = at(scene.loads, 1, "wind");
+  const RodLoad& wind = std::get<RodLoad>(at(scene.loads, 1, "wind"));
   EXPECT_EQ(wind.from, 0.01);
   EXPECT_EQ(wind.to, 0.05);
   EXPECT_EQ(wind.force, Vec3(0, 2, 0));
   EXPECT_EQ(wind.moment, Vec3(1, 0, 0));
   EXPECT_EQ(std::get<Table>(wind.factor).values, (std::vector<double>{0, 3}));
 
-  const Load& screw = at(scene.loads, 2, "screw");
+  const RodLoad& screw = std::get<RodLoad>(at(scene.loads, 2, "screw"));
   EXPECT_EQ(screw.at, 0.05);
   EXPECT_EQ(screw.moment, Vec3(0.02, 0, 0));
   EXPECT_TRUE(screw.follower);
   EXPECT_TRUE(std::holds_alternative<External>(screw.factor));
 
-  const Load& push = at(scene.loads, 3, "push");
+  const RodLoad& push = std::get<RodLoad>(at(scene.loads, 3, "push"));
   EXPECT_FALSE(push.follower);
   EXPECT_EQ(std::get<Table>(push.factor).values, std::vector<double>{-2.5});
 }
@@ -267,7 +267,7 @@ TEST(SceneRods, OverridesReachTheNewKeys) {
                          "loads.weight.force.2=-2 N", "couplings.1.tie.at=20 mm", "actuators.wire.tendon.angle=0"});
   EXPECT_EQ(scene.rods[0].second.order[0], 3);
   EXPECT_EQ(std::get<Circle>(scene.rods[0].second.parts[1].section).radius.end, 0.001);
-  EXPECT_EQ(scene.loads[0].second.force.z(), -2.0);
+  EXPECT_EQ(std::get<RodLoad>(scene.loads[0].second).force.z(), -2.0);
   EXPECT_EQ(std::get<Tie>(scene.couplings[1]).at, 0.02);
   EXPECT_EQ(scene.actuators[2].second.tendon->angle.end, 0.0);
 }
@@ -278,7 +278,7 @@ TEST(SceneRods, TextReproducesTheScene) {
   const SceneFile second = parse_scene(first.text, "rods.yaml", "");
   EXPECT_EQ(parse_scene(second.text, "rods.yaml", "", {"title=x"}).text, first.text);
   EXPECT_EQ(std::get<RestStrains>(second.scene.rods[0].second.rest).strains[1], strains(0.5, 2, 200, 0.1, 0.01, -0.03));
-  EXPECT_TRUE(second.scene.loads[2].second.follower);
+  EXPECT_TRUE(std::get<RodLoad>(second.scene.loads[2].second).follower);
   EXPECT_EQ(std::get<Tie>(second.scene.couplings[2]).along, (std::array{false, false, false}));
 }
 

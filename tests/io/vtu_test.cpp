@@ -12,6 +12,8 @@
 #include <string>
 #include <type_traits>
 
+#include "sinew/io/mesh_file.hpp"
+
 namespace sinew::io {
 namespace {
 
@@ -72,7 +74,7 @@ SolidSnapshot two_tetrahedra() {
   solid.nodes = solid.rest;
   solid.nodes.col(3) << 0.1, -0.0, 1.0 / 3.0;
   solid.nodes.col(4) << std::numeric_limits<double>::denorm_min(), 1e300, -7;
-  solid.tetrahedra = {{0, 1, 2, 3}, {1, 4, 2, 3}};
+  solid.cells = {{solid::Kind::tet4, {0, 1, 2, 3}}, {solid::Kind::tet4, {1, 4, 2, 3}}};
   solid.von_mises.resize(2);
   solid.von_mises << 1234.5, 1e6 / 7;
   return solid;
@@ -131,6 +133,32 @@ TEST(Vtu, solid_has_all_its_numbers) {
   EXPECT_EQ(values<std::int64_t>(p.child("Cells"), "offsets"), (std::vector<std::int64_t>{4, 8}));
   EXPECT_EQ(values<std::uint8_t>(p.child("Cells"), "types"), (std::vector<std::uint8_t>{10, 10}));
   EXPECT_EQ(values<double>(p.parent().child("FieldData"), "TimeValue"), std::vector<double>{0.25});
+}
+
+TEST(Vtu, cells_of_every_kind_are_read_as_they_were) {
+  SolidSnapshot solid;
+  solid.nodes = Eigen::Matrix3Xd::Zero(3, 15);
+  solid.nodes.leftCols(8) << 0, 1, 1, 0, 0, 1, 1, 0,  //
+      0, 0, 1, 1, 0, 0, 1, 1,                         //
+      0, 0, 0, 0, 1, 1, 1, 1;
+  // On top of the cube's corners 4, 5, 7 a curved tetrahedron to node 8 and, on one of its faces, a straight one.
+  solid.nodes.col(8) << 0, 0, 3;
+  const int edges[6][2] = {{4, 5}, {5, 7}, {7, 4}, {4, 8}, {5, 8}, {7, 8}};
+  for (int e = 0; e < 6; ++e)
+    solid.nodes.col(9 + e) = (solid.nodes.col(edges[e][0]) + solid.nodes.col(edges[e][1])) / 2;
+  solid.nodes.col(10) += Eigen::Vector3d(0.1, 0.1, 0);
+  solid.cells = {{solid::Kind::hex8, {0, 1, 2, 3, 4, 5, 6, 7}},
+                 {solid::Kind::tet10, {4, 5, 7, 8, 9, 10, 11, 12, 13, 14}},
+                 {solid::Kind::tet4, {5, 6, 7, 8}}};
+  const std::string text = vtu_text(solid, 0.5);
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(text.c_str()));
+  const auto cells = piece(document).child("Cells");
+  EXPECT_EQ(values<std::uint8_t>(cells, "types"), (std::vector<std::uint8_t>{12, 24, 10}));
+  EXPECT_EQ(values<std::int64_t>(cells, "offsets"), (std::vector<std::int64_t>{8, 18, 22}));
+  const solid::Mesh mesh = parse_mesh(text, "text");
+  EXPECT_EQ(mesh.cells, solid.cells);
+  EXPECT_EQ(mesh.nodes, solid.nodes);
 }
 
 TEST(Vtu, rod_has_all_its_numbers) {

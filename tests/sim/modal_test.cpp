@@ -63,7 +63,7 @@ TEST(Modal, TautRodRisesWithTension) {
     rod.up = Vec3(0, 0, 1);  // bending_z moves the rod along world z, turning about -y
     rod.base = {BaseAxis::turn_z};
     scene.couplings.emplace_back(pin);
-    Load pull;
+    RodLoad pull;
     pull.rod = "rod";
     pull.force = Vec3(tension, 0, 0);
     scene.loads.emplace_back("pull", pull);
@@ -83,7 +83,7 @@ TEST(Modal, AnUnstableColumnHasANegativeFrequency) {
   const double critical = std::pow(std::numbers::pi / (2 * kLength), 2) * kStiffness;
   for (const double part : {0.99, 1.01}) {
     Scene scene = slender(30, 0);
-    Load push;
+    RodLoad push;
     push.rod = "rod";
     push.force = Vec3(-part * critical, 0, 0);
     scene.loads.emplace_back("push", push);
@@ -113,6 +113,42 @@ TEST(Modal, MasslessRodsAreRefusedWithAReason) {
   const StepResult result = advance(model, workspace, initial_state(model));
   EXPECT_EQ(result.report.status, Status::singular);
   EXPECT_NE(result.report.detail.find("density"), std::string::npos);
+}
+
+TEST(Modal, BlockAndRodOfTheSameShapeHaveTheSameFrequencies) {
+  Scene scene;
+  scene.analysis = Analysis::modal;
+  Solid block;
+  block.mesh = "block";
+  block.material.law = solid::neo_hookean(1e6, 0.0);
+  block.density = 1000.0;
+  block.mass_matrix = solid::MassMatrix::consistent;
+  block.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitX()}});
+  scene.solids.emplace_back("block", block);
+  const Model model =
+      build(scene, [](const auto&) { return test::block_mesh(20, 1, 1, Vec3(0.4, 0.01, 0.01), solid::Kind::tet10); });
+  Workspace workspace = make_workspace(model);
+  std::string failed;
+  const auto modes = natural_modes(model, workspace, initial_state(model), 6, failed);
+  ASSERT_EQ(modes.size(), 6u) << failed;
+  const double bend = std::sqrt(1e6 * 1e-8 / 12 / (1000.0 * 1e-4)) / (0.4 * 0.4);
+  for (const auto& [number, root] :
+       {std::pair(0, 1.8751040687), {1, 1.8751040687}, {2, 4.6940911330}, {4, 7.8547574382}}) {
+    const double omega = root * root * bend;
+    EXPECT_NEAR(2 * std::numbers::pi * modes[static_cast<std::size_t>(number)].frequency, omega, 0.015 * omega)
+        << number;
+  }
+}
+
+TEST(Modal, BlockWithItsCableIsFoundByTheSameModesAsItsMatrices) {
+  Scene scene = test::cable_block();
+  scene.analysis = Analysis::modal;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
+  EXPECT_GT(trace.states[1].frequency, 1.0);
+  for (std::size_t i = 2; i < trace.states.size(); ++i)
+    EXPECT_GE(trace.states[i].frequency, trace.states[i - 1].frequency);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST(Placement, boxes_and_points_are_in_the_objects_frame_unless_in_world) {
   scene.outputs[0].second.point = {Vec3(1.0, 2.0, 3.0), In::world};
   const Model world = build(scene, test::read_block);
   EXPECT_LT((test::tip(world, initial_state(world)) - Vec3(1, 2, 3)).norm(), 1e-15);
-  scene.solids[0].second.fixed[0].in = In::world;
+  std::get<Box>(scene.solids[0].second.fixed[0].region).in = In::world;
   EXPECT_THROW(build(scene, test::read_block), InputError);  // the box is then far from the body
 }
 
@@ -53,7 +53,7 @@ TEST(Placement, rods_y_axis_is_the_worlds_up_by_default) {
 
 TEST(Build, points_in_a_clamped_region_are_dropped_or_met_by_the_rod) {
   Scene scene = test::cable_block();
-  scene.solids[0].second.fixed[0].upper.x() = 31e-3;  // half the block is held
+  std::get<Box>(scene.solids[0].second.fixed[0].region).upper.x() = 31e-3;  // half the block is held
   test::slide(scene, 0).points = 31;
   const Model model = build(scene, test::read_block);
   EXPECT_EQ(model.couplings[0].no_unknown, std::vector<double>{0.0});  // at the base neither side can move

@@ -149,7 +149,7 @@ Scene everything(Coupling tie) {
   tendon.driven = Driven::force;
   tendon.drive = Table{{0.0}, {2.0}};
   scene.actuators.emplace_back("pulled", tendon);
-  Load load;
+  RodLoad load;
   load.rod = "b";
   load.force = Vec3(0.1, -0.2, 0.3);
   load.moment = Vec3(0.01, 0.02, -0.03);
@@ -220,11 +220,11 @@ TEST(Build, an_anchor_is_kept_where_nothing_else_could_be) {
   // In a clamped region, on a rod that can only stretch: no row across it says anything, the anchor's row along it
   // does.
   Scene scene = test::cable_block();
-  scene.solids[0].second.fixed[0].upper = Vec3(61 * test::mm, 11 * test::mm, 4 * test::mm);
+  std::get<Box>(scene.solids[0].second.fixed[0].region).upper = Vec3(61 * test::mm, 11 * test::mm, 4 * test::mm);
   scene.rods[0].second.path = {Vec3(0, 5 * test::mm, 3 * test::mm), Vec3(60 * test::mm, 5 * test::mm, 3 * test::mm)};
   scene.rods[0].second.strains = {Strain::elongation};
   test::slide(scene, 0).points = std::vector<double>{60 * test::mm};
-  scene.solids[0].second.fixed[0].upper.z() = 6 * test::mm;
+  std::get<Box>(scene.solids[0].second.fixed[0].region).upper.z() = 6 * test::mm;
   const Model model = build(scene, test::read_block);
   EXPECT_EQ(model.couplings[0].kept, 1);
   const test::Trace trace = test::run_all(model);

@@ -231,7 +231,7 @@ TEST(Step, a_moving_frame_carries_everything_attached_to_it) {
   EXPECT_LT((apply(moved, test::tip(model, trace.states.front())) - test::tip(model, trace.states.back())).norm(),
             1e-7);
   for (int i = 0; i < model.solids[0].body.nodes(); ++i) {
-    if (model.solids[0].body.unknown[i] >= 0) continue;
+    if (model.solids[0].body.unknown(0, i) >= 0) continue;
     EXPECT_LT((trace.states.back().solids[0].x.col(i) - apply(moved, model.solids[0].body.rest.col(i))).norm(), 1e-15);
   }
 }

@@ -7,6 +7,7 @@
 
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
+#include "support/meshes.hpp"
 
 namespace sinew::test {
 
@@ -47,12 +48,11 @@ inline Scene comparison_finger(const std::filesystem::path& mesh, double pull, d
   finger.mesh = mesh;
   finger.scale = 1e-3;
   finger.pose = moved({{0.0, std::numbers::pi, 0.0}, {-17.5 * mm, -12.5 * mm, 7.5 * mm}});
-  finger.material.young = 500e3;
-  finger.material.poisson = 0.45;
+  finger.material.law = solid::corotational(500e3, 0.45);
   finger.mass = 0.075;
   finger.rayleigh = {0.1, 0.1};
   // World box [-18, -15, -8] .. [2, -3, 8] mm seen from the mesh, before its pose.
-  finger.fixed.push_back({Vec3(-19.5 * mm, -2.5 * mm, -0.5 * mm), Vec3(0.5 * mm, 9.5 * mm, 15.5 * mm), In::object});
+  finger.fixed.push_back({Box{Vec3(-19.5 * mm, -2.5 * mm, -0.5 * mm), Vec3(0.5 * mm, 9.5 * mm, 15.5 * mm)}});
   scene.solids.emplace_back("finger", finger);
   Rod cable;
   cable.path = {Vec3::Zero(), Vec3(81 * mm, 0, 0)};
@@ -70,45 +70,16 @@ inline Scene comparison_finger(const std::filesystem::path& mesh, double pull, d
   return scene;
 }
 
-/// A block of nx x ny x nz cells of six tetrahedra each, from the origin to `size`.
-inline solid::Mesh block_mesh(int nx, int ny, int nz, const Vec3& size) {
-  solid::Mesh mesh;
-  const auto number = [=](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
-  mesh.nodes.resize(3, (nx + 1) * (ny + 1) * (nz + 1));
-  for (int k = 0; k <= nz; ++k) {
-    for (int j = 0; j <= ny; ++j) {
-      for (int i = 0; i <= nx; ++i)
-        mesh.nodes.col(number(i, j, k)) = Vec3(size.x() * i / nx, size.y() * j / ny, size.z() * k / nz);
-    }
-  }
-  for (int k = 0; k < nz; ++k) {
-    for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) {
-        const auto corner = [&](int c) { return number(i + (c & 1), j + ((c >> 1) & 1), k + ((c >> 2) & 1)); };
-        // Six tetrahedra around the diagonal from corner 0 to corner 7.
-        const int ring[] = {1, 3, 2, 6, 4, 5, 1};
-        for (int t = 0; t < 6; ++t) {
-          solid::Tetrahedron tet = {corner(0), corner(ring[t]), corner(ring[t + 1]), corner(7)};
-          if (solid::volume(mesh.nodes, tet) < 0.0) std::swap(tet[1], tet[2]);
-          mesh.tetrahedra.push_back(tet);
-        }
-      }
-    }
-  }
-  return mesh;
-}
-
 /// A block 60 x 10 x 10 mm clamped at x = 0 with a cable off its middle, anchored at its end; no file is read.
 inline Scene cable_block(double pull = 2 * mm, double rate = 0.02) {
   Scene scene;
   scene.time = {0.01, 0.2};
   Solid block;
   block.mesh = "block";
-  block.material.young = 300e3;
-  block.material.poisson = 0.4;
+  block.material.law = solid::corotational(300e3, 0.4);
   block.density = 1000.0;
   block.rayleigh = {0.1, 0.02};
-  block.fixed.push_back({Vec3(-mm, -mm, -mm), Vec3(mm, 11 * mm, 11 * mm), In::object});
+  block.fixed.push_back({Box{Vec3(-mm, -mm, -mm), Vec3(mm, 11 * mm, 11 * mm)}});
   scene.solids.emplace_back("block", block);
   Rod cable;
   cable.path = {Vec3(0, 5 * mm, 8 * mm), Vec3(60 * mm, 5 * mm, 8 * mm)};

@@ -51,7 +51,7 @@ TEST_P(Convergence, holds_under_a_distributed_load_too) {
   const auto tip_of = [this](int order, int sections) {
     Scene scene = straight_rod(1.0, sections, given(kStiffness), all_ ? kAll : kBending, order, 2);
     scene.newton.tolerance = 1e-13;
-    Load& load = add_load(scene, 2.0 * kForce);
+    RodLoad& load = add_load(scene, 2.0 * kForce);
     load.from = 0.0;
     load.to = 1.0;
     return solve(scene).tip();

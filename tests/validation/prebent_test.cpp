@@ -23,10 +23,9 @@ Scene prebent_rod(int steps) {
   scene.newton.limit = 60;
   Solid block;
   block.mesh = "block";
-  block.material.young = 20e3;
-  block.material.poisson = 0.4;
+  block.material.law = solid::corotational(20e3, 0.4);
   block.density = 1000.0;
-  block.fixed.push_back({Vec3(-1, -1, -1 * mm), Vec3(1, 1, 0.1 * mm), In::world});
+  block.fixed.push_back({Box{Vec3(-1, -1, -1 * mm), Vec3(1, 1, 0.1 * mm), In::world}});
   scene.solids.emplace_back("block", block);
   Rod rod;
   rod.path = {Vec3(-12 * mm, 10 * mm, 10 * mm), Vec3(45 * mm, 10 * mm, 10 * mm)};

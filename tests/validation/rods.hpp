@@ -54,15 +54,16 @@ inline Scene straight_rod(double length, int sections, const CrossSection& secti
 }
 
 /// A point load that grows from zero at t = 0 to its value at t = 1; at the tip unless `at` is given.
-inline Load& add_load(Scene& scene, const Vec3& force, const Vec3& moment = Vec3::Zero(),
-                      std::optional<double> at = {}) {
-  Load load;
+inline RodLoad& add_load(Scene& scene, const Vec3& force, const Vec3& moment = Vec3::Zero(),
+                         std::optional<double> at = {}) {
+  RodLoad load;
   load.rod = "rod";
   load.at = at;
   load.force = force;
   load.moment = moment;
   load.factor = Table{{0.0, 1.0}, {0.0, 1.0}};
-  return scene.loads.emplace_back("load" + std::to_string(scene.loads.size()), load).second;
+  scene.loads.emplace_back("load" + std::to_string(scene.loads.size()), load);
+  return std::get<RodLoad>(scene.loads.back().second);
 }
 
 /// Turns the base about x to `angle` at t = 1.

@@ -58,8 +58,8 @@ TEST(Tie, inextensible_straight_rod_anchored_by_position_turns_without_torque) {
   EXPECT_NEAR(solved.frame(L)(1, 1), std::cos(1.5), 1e-8);
 }
 
-Load& add_line_load(Scene& scene, double q) {
-  Load& load = add_load(scene, Vec3(0, -q, 0));
+RodLoad& add_line_load(Scene& scene, double q) {
+  RodLoad& load = add_load(scene, Vec3(0, -q, 0));
   load.from = 0.0;
   load.to = L;
   return load;
@@ -171,7 +171,7 @@ TEST_P(Joined, two_rods_rigidly_tip_to_tip_are_one_rod) {
   add_second(two, 1.5 * L, 2,
              {BaseAxis::x, BaseAxis::y, BaseAxis::z, BaseAxis::turn_x, BaseAxis::turn_y, BaseAxis::turn_z})
       .about = {true, true, true};
-  Load& load = add_load(two, force, Vec3::Zero(), 0.0);
+  RodLoad& load = add_load(two, force, Vec3::Zero(), 0.0);
   load.rod = "second";
   const Solved whole = solve(one), halves = solve(two);
   EXPECT_GT((whole.tip() - Vec3(1.5 * L, 0, 0)).norm(), 0.2 * L);

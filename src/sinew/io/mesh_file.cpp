@@ -4,9 +4,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <system_error>
 
 #include "sinew/error/input_error.hpp"
@@ -43,58 +45,140 @@ std::string read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-std::string list(const std::map<std::string, int>& kinds) {
+/// What the file has besides elements.
+std::string list(const solid::Mesh& mesh) {
   std::string text;
-  for (const auto& [kind, count] : kinds) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, kind);
-  return text.empty() ? "no cells" : text;
+  for (const auto& [kind, count] : mesh.ignored) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, kind);
+  std::size_t faces = 0;
+  for (const auto& [name, group] : mesh.groups) faces += group.faces.size();
+  if (faces > 0) text += fmt::format("{}{} faces in groups", text.empty() ? "" : ", ", faces);
+  if (text.empty()) text = mesh.groups.empty() ? "no cells" : "lines or points only";
+  return text;
 }
 
-double longest_edge(const Eigen::Matrix3Xd& nodes, const solid::Tetrahedron& tet) {
+/// "cell 7 (0-based, counting used cells only), an 8-node hexahedron".
+std::string title(const solid::Mesh& mesh, std::size_t cell) {
+  const solid::Kind kind = mesh.cells[cell].kind;
+  return fmt::format("cell {} (0-based, counting used cells only), {} {}", cell, kind == solid::Kind::hex8 ? "an" : "a",
+                     solid::name(kind));
+}
+
+double longest_edge(const Eigen::Matrix3Xd& nodes, const solid::Cell& tet) {
   double longest = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < i; ++j) longest = std::max(longest, (nodes.col(tet[i]) - nodes.col(tet[j])).norm());
+    for (std::size_t j = 0; j < i; ++j) {
+      longest = std::max(longest, (nodes.col(tet.node[i]) - nodes.col(tet.node[j])).norm());
+    }
   }
   return longest;
 }
 
-void check_nodes(const solid::Mesh& mesh, const std::string& file) {
+void check_coordinates(const solid::Mesh& mesh, const std::string& file) {
   for (Eigen::Index i = 0; i < mesh.nodes.cols(); ++i) {
     if (mesh.nodes.col(i).allFinite()) continue;
     fail(file,
          fmt::format("node {} (0-based) at ({}, {}, {})", i, mesh.nodes(0, i), mesh.nodes(1, i), mesh.nodes(2, i)),
          "coordinates must be finite", "find out in the program that wrote the mesh where it comes from");
   }
-  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
-    for (const int node : mesh.tetrahedra[i]) {
-      if (node >= 0 && node < mesh.nodes.cols()) continue;
-      fail(file, std::to_string(node),
-           fmt::format("node number in tetrahedron {} (0-based, counting tetrahedra only) must be from 0 to {}", i,
-                       mesh.nodes.cols() - 1),
-           "nodes are numbered from 0; check the numbers or the count of the points");
+}
+
+void check_nodes(const solid::Mesh& mesh, const std::string& file) {
+  for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
+    const std::span<const int> nodes = mesh.cells[i].nodes();
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (nodes[k] < 0 || nodes[k] >= mesh.nodes.cols()) {
+        fail(file, std::to_string(nodes[k]),
+             fmt::format("node number in {}, must be from 0 to {}", title(mesh, i), mesh.nodes.cols() - 1),
+             "nodes are numbered from 0; check the numbers or the count of the points");
+      }
+      const std::span<const int> before = nodes.first(k);
+      if (std::find(before.begin(), before.end(), nodes[k]) != before.end()) {
+        fail(file, fmt::format("node {} twice", nodes[k]),
+             fmt::format("the nodes of {}, must all be different", title(mesh, i)),
+             "remove the cell if it is flat, else remesh it or split it into tetrahedra");
+      }
     }
   }
 }
 
-void check_volumes(const solid::Mesh& mesh, const std::string& file) {
-  std::size_t bad = 0, first = 0;
-  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
-    const double edge = longest_edge(mesh.nodes, mesh.tetrahedra[i]);
-    const double smallest = 1e-12 * edge * edge * edge;
-    const double size = solid::volume(mesh.nodes, mesh.tetrahedra[i]);
-    if (size > smallest && std::isfinite(size)) continue;  // also false for NaN
-    if (bad++ == 0) first = i;
+/// The same cell turned inside out.
+solid::Cell mirrored(const solid::Cell& cell) {
+  static constexpr std::array<int, solid::kMostNodes> tetrahedron = {0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
+  static constexpr std::array<int, solid::kMostNodes> hexahedron = {4, 5, 6, 7, 0, 1, 2, 3, 8, 9};
+  solid::Cell other = cell;
+  for (std::size_t i = 0; i < cell.nodes().size(); ++i) {
+    const int from = cell.kind == solid::Kind::hex8 ? hexahedron[i] : tetrahedron[i];
+    other.node[i] = cell.node[static_cast<std::size_t>(from)];
   }
-  if (bad == 0) return;
-  const bool all = bad == mesh.tetrahedra.size();
-  const double size = solid::volume(mesh.nodes, mesh.tetrahedra[first]);
-  fail(file, fmt::format("volume {:.6g} of tetrahedron {} (0-based, counting tetrahedra only)", size, first),
+  return other;
+}
+
+/// The cells of a kind whose shape is refused.
+struct Refused {
+  std::size_t of = 0;        ///< all cells of the kind
+  std::size_t count = 0;     ///< those refused
+  std::size_t inverted = 0;  ///< those of them that are good when mirrored
+  std::size_t first = 0;     ///< among all cells
+};
+
+template <class Accept>
+Refused refused(const solid::Mesh& mesh, solid::Kind kind, Accept accept) {
+  Refused found;
+  for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
+    const solid::Cell& cell = mesh.cells[i];
+    if (cell.kind != kind) continue;
+    ++found.of;
+    if (accept(cell)) continue;
+    if (found.count++ == 0) found.first = i;
+    if (accept(mirrored(cell))) ++found.inverted;
+  }
+  return found;
+}
+
+constexpr double smallest_part = 1e-12;
+
+/// Linear tetrahedra: their volume says it all.
+void check_volumes(const solid::Mesh& mesh, const std::string& file) {
+  const Refused bad = refused(mesh, solid::Kind::tet4, [&mesh](const solid::Cell& cell) {
+    const double volume = solid::volume(mesh.nodes, cell), edge = longest_edge(mesh.nodes, cell);
+    return volume > smallest_part * edge * edge * edge && std::isfinite(volume);  // also false for NaN
+  });
+  if (bad.count == 0) return;
+  fail(file,
+       fmt::format("volume {:.6g} of tetrahedron {} (0-based, counting used cells only)",
+                   solid::volume(mesh.nodes, mesh.cells[bad.first]), bad.first),
        fmt::format("every tetrahedron (a, b, c, d) must have a positive volume, (b-a)x(c-a).(d-a) / 6, above 1e-12 of "
                    "its longest edge cubed; {} of {} do not",
-                   bad, mesh.tetrahedra.size()),
-       all && size < 0.0
+                   bad.count, bad.of),
+       bad.inverted == bad.of
            ? "all are the wrong way round: swap two nodes of every tetrahedron in the program that writes "
              "the mesh"
            : "reorder the nodes of tetrahedra of negative volume, remove or remesh those of zero volume");
+}
+
+/// Curved and twisted elements can have a positive volume and yet be folded in a corner.
+void check_folds(const solid::Mesh& mesh, solid::Kind kind, const std::string& file) {
+  const Refused bad = refused(mesh, kind, [&mesh](const solid::Cell& cell) {
+    const double volume = solid::volume(mesh.nodes, cell);
+    return volume > 0.0 && std::isfinite(volume) &&
+           solid::smallest_jacobian(mesh.nodes, cell) > smallest_part;  // also false for NaN
+  });
+  if (bad.count == 0) return;
+  const char* remedy =
+      kind == solid::Kind::hex8
+          ? "remesh it with less twist; if many are folded, their nodes stand in another order than that of the file's "
+            "format"
+          : "straighten its edges (in Gmsh: Mesh.HighOrderOptimize = 2) or remesh it finer; if many are folded, their "
+            "nodes stand in another order than that of the file's format";
+  fail(file,
+       fmt::format("relative Jacobian {:.6g} of {}", solid::smallest_jacobian(mesh.nodes, mesh.cells[bad.first]),
+                   title(mesh, bad.first)),
+       fmt::format("a curved or twisted element must not be folded: the determinant of dX/dxi, relative to its size, "
+                   "must be above 1e-12 at its nodes and quadrature points; {} of {} are folded",
+                   bad.count, bad.of),
+       bad.inverted == bad.of ? "all are the wrong way round: mirror the order of the nodes of every such cell in the "
+                                "program that writes the mesh"
+                              : remedy);
 }
 
 }  // namespace
@@ -122,12 +206,16 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
 }
 
 void check_mesh(const solid::Mesh& mesh, const std::string& file) {
-  if (mesh.tetrahedra.empty()) {
-    fail(file, list(mesh.ignored), "the mesh must have at least one linear tetrahedron with 4 nodes",
-         "mesh the volume, not only its surface, with first-order tetrahedra (in Gmsh: Mesh 3D, order 1)");
+  if (mesh.cells.empty()) {
+    fail(file, list(mesh), "the mesh must have at least one tetrahedron with 4 or 10 nodes or hexahedron with 8 nodes",
+         "mesh the volume, not only its surface (in Gmsh: Mesh 3D), with tetrahedra of order 1 or 2, or hexahedra of "
+         "order 1");
   }
+  check_coordinates(mesh, file);
   check_nodes(mesh, file);
   check_volumes(mesh, file);
+  check_folds(mesh, solid::Kind::tet10, file);
+  check_folds(mesh, solid::Kind::hex8, file);
 }
 
 }  // namespace sinew::io

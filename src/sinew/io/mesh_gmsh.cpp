@@ -19,7 +19,8 @@ class Gmsh {
     solid::Mesh mesh;
     mesh.nodes = Eigen::Map<const Eigen::Matrix3Xd>(content_.coordinates.data(), 3, std::ssize(content_.tags));
     mesh.ignored = std::move(content_.ignored);
-    add_tetrahedra(mesh);
+    add_elements(mesh);
+    finish_cells(mesh);
     return mesh;
   }
 
@@ -43,6 +44,10 @@ class Gmsh {
         seen = true;
         cursor_.line();
         read_content(name == "$Nodes");
+      } else if (name == "$PhysicalNames" || (name == "$Entities" && version_4_)) {
+        if (elements) cursor_.fail(quoted(name), "must come before $Elements", "write the mesh again with Gmsh");
+        cursor_.line();
+        name == "$Entities" ? read_entities_4(cursor_, encoding_, content_) : read_names(cursor_, content_);
       } else {
         skip(name);
         continue;
@@ -110,7 +115,7 @@ class Gmsh {
   }
 
   /// From node tags to node numbers.
-  void add_tetrahedra(solid::Mesh& mesh) {
+  void add_elements(solid::Mesh& mesh) {
     std::vector<std::pair<std::int64_t, int>> numbers;
     numbers.reserve(content_.tags.size());
     for (const std::int64_t tag : content_.tags) numbers.emplace_back(tag, static_cast<int>(numbers.size()));
@@ -122,16 +127,23 @@ class Gmsh {
                       fmt::format("node tag {}", twice->first), "a node tag must stand for one node only",
                       "renumber the nodes in Gmsh and save again");
     }
-    mesh.tetrahedra.resize(content_.places.size());
-    for (std::size_t i = 0; i < content_.tetrahedra.size(); ++i) {
-      const std::int64_t tag = content_.tetrahedra[i];
-      const auto found = std::lower_bound(numbers.begin(), numbers.end(), std::pair(tag, 0));
-      if (found == numbers.end() || found->first != tag) {
-        cursor_.fail_at(content_.places[i / 4], fmt::format("node tag {}", tag),
-                        fmt::format("the nodes of tetrahedron {} (0-based) must be in $Nodes", i / 4),
-                        "the file is incomplete: write the mesh again with Gmsh");
+    auto tag = content_.element_tags.begin();
+    std::vector<int> nodes;
+    for (std::size_t i = 0; i < content_.elements.size(); ++i) {
+      const GmshElement& element = content_.elements[i];
+      nodes.clear();
+      for (int k = 0; k < element.kind->nodes; ++k, ++tag) {
+        const auto found = std::lower_bound(numbers.begin(), numbers.end(), std::pair(*tag, 0));
+        if (found == numbers.end() || found->first != *tag) {
+          cursor_.fail_at(element.place, fmt::format("node tag {}", *tag),
+                          fmt::format("the nodes of element {} (0-based, counting used elements only), a {}, must be "
+                                      "in $Nodes",
+                                      i, element.kind->name),
+                          "the file is incomplete: write the mesh again with Gmsh");
+        }
+        nodes.push_back(found->second);
       }
-      mesh.tetrahedra[i / 4][i % 4] = found->second;
+      add_cell(mesh, *element.kind, nodes, *element.groups);
     }
   }
 

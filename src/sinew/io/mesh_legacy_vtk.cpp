@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
 #include "sinew/io/byte_cursor.hpp"
+#include "sinew/io/mesh_cells.hpp"
 #include "sinew/io/mesh_formats.hpp"
+#include "sinew/io/mesh_legacy_data.hpp"
 #include "sinew/io/vtk_cells.hpp"
 
 namespace sinew::io {
@@ -25,12 +26,14 @@ class LegacyVtk {
       if (!read_section()) break;
     }
     require_complete();
+    read_groups(cursor_, encoding_, cells_);
     solid::Mesh mesh;
     mesh.nodes = std::move(*nodes_);
     add_cells(cells_, 0, mesh.nodes.cols(), mesh,
               [this](std::size_t cell, const std::string& value, const std::string& rule, const std::string& remedy) {
                 cursor_.fail_at(where_.empty() ? 0 : where_[cell], value, rule, remedy);
               });
+    finish_cells(mesh);
     return mesh;
   }
 
@@ -54,7 +57,7 @@ class LegacyVtk {
     const std::string_view dataset = cursor_.word("the kind of the dataset");
     if (!equal_ignoring_case(dataset, "UNSTRUCTURED_GRID")) {
       cursor_.fail(quoted(dataset), "the dataset must be an UNSTRUCTURED_GRID",
-                   "a surface or an image has no tetrahedra: mesh its volume first, for example with Gmsh");
+                   "a surface or an image has no volume: mesh its volume first, for example with Gmsh");
     }
     if (!encoding_.text) cursor_.fix_line(0);
   }
@@ -80,7 +83,7 @@ class LegacyVtk {
     }
   }
 
-  /// One section; false at the data of points and cells, which come last and are of no use here.
+  /// One section; false at the data of points and cells, which come last.
   bool read_section() {
     const std::string_view keyword = cursor_.word("a section");
     const auto is = [keyword](std::string_view name) { return equal_ignoring_case(keyword, name); };
@@ -92,8 +95,7 @@ class LegacyVtk {
     } else if (is("CELL_TYPES")) {
       read_types();
     } else if (is("METADATA")) {
-      cursor_.line();
-      while (cursor_.remaining() > 0 && !cursor_.line().empty()) continue;
+      skip_metadata(cursor_);
     } else if (is("FIELD")) {
       skip_field();
     } else {
@@ -104,26 +106,13 @@ class LegacyVtk {
   }
 
   NumberType number_type() {
-    using enum NumberType;
-    static constexpr std::array<std::pair<std::string_view, NumberType>, 13> names = {{{"char", i8},
-                                                                                       {"unsigned_char", u8},
-                                                                                       {"short", i16},
-                                                                                       {"unsigned_short", u16},
-                                                                                       {"int", i32},
-                                                                                       {"unsigned_int", u32},
-                                                                                       {"long", i64},
-                                                                                       {"unsigned_long", u64},
-                                                                                       {"float", f32},
-                                                                                       {"double", f64},
-                                                                                       {"vtkIdType", i32},
-                                                                                       {"vtktypeint64", i64},
-                                                                                       {"vtktypeuint64", u64}}};
     const std::string_view word = cursor_.word("the type of the numbers");
-    for (const auto& [name, type] : names) {
-      if (equal_ignoring_case(word, name)) return type;
+    const std::optional<NumberType> type = legacy_number_type(word);
+    if (!type) {
+      cursor_.fail(quoted(word), "the type of the numbers must be one of float, double, int, long, vtktypeint64, ...",
+                   "write the mesh again as legacy VTK");
     }
-    cursor_.fail(quoted(word), "the type of the numbers must be one of float, double, int, long, vtktypeint64, ...",
-                 "write the mesh again as legacy VTK");
+    return *type;
   }
 
   NumberType integer_type() {

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <pugixml.hpp>
+#include <string_view>
 
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/byte_cursor.hpp"
+#include "sinew/io/mesh_cells.hpp"
 #include "sinew/io/mesh_formats.hpp"
 #include "sinew/io/vtk_cells.hpp"
 #include "sinew/io/vtu_array.hpp"
@@ -30,6 +33,7 @@ class Vtu {
     solid::Mesh mesh;
     for (const pugi::xml_node piece : grid.children("Piece")) read_piece(piece, mesh);
     mesh.nodes = Eigen::Map<const Eigen::Matrix3Xd>(coordinates_.data(), 3, std::ssize(coordinates_) / 3);
+    finish_cells(mesh);
     return mesh;
   }
 
@@ -74,7 +78,7 @@ class Vtu {
     const std::string type = attribute("type", "");
     if (type != "UnstructuredGrid") {
       refuse("type", type, "VTKFile must be of type UnstructuredGrid",
-             "a surface or an image has no tetrahedra: mesh its volume first, for example with Gmsh");
+             "a surface or an image has no volume: mesh it first, for example with Gmsh");
     }
     const std::string order = attribute("byte_order", "LittleEndian");
     if (order != "LittleEndian" && order != "BigEndian") {
@@ -115,10 +119,26 @@ class Vtu {
     }
     const VtuArray connectivity = named(parent, "connectivity");
     list.connectivity = connectivity.integers(static_cast<std::size_t>(entries));
+    read_groups(piece, cells, list);
     add_cells(list, first_node, static_cast<std::int64_t>(points), mesh,
               [&](std::size_t, const std::string& value, const std::string& rule, const std::string& remedy) {
                 connectivity.fail(value, rule, remedy);
               });
+  }
+
+  /// Keeps the array that groups the cells, if there is one.
+  void read_groups(const pugi::xml_node& piece, std::size_t cells, VtkCells& list) {
+    pugi::xml_node groups;
+    for (const pugi::xml_node element : piece.child("CellData").children("DataArray")) {
+      const std::string_view type = element.attribute("type").as_string();
+      const std::optional<GroupArray> found = group_array(element.attribute("Name").as_string());
+      if (!found || (list.grouped_by && *list.grouped_by <= *found)) continue;
+      if (!(type.starts_with("Int") || type.starts_with("UInt"))) continue;
+      if (element.attribute("NumberOfComponents").as_int(1) != 1) continue;
+      list.grouped_by = found;
+      groups = element;
+    }
+    if (groups) list.groups = array(groups).integers(cells);
   }
 
   std::size_t count(const pugi::xml_node& piece, const char* name) {

@@ -26,7 +26,7 @@ Raster::Raster(const Area& area, const Palette& palette)
       palette_(palette),
       samples_(static_cast<std::size_t>(columns_) * rows_, Sample{-INFINITY, 0, 0, 0, 0}) {}
 
-void Raster::add(const std::array<Corner, 3>& corners, double edge) {
+void Raster::add(const std::array<Corner, 3>& corners, const std::array<double, 3>& edge) {
   double px[3], py[3];  // in samples, their centres at whole numbers
   for (int i = 0; i < 3; ++i) {
     if (!corners[i].place.allFinite() || corners[i].place.cwiseAbs().maxCoeff() > 1e6) return;
@@ -59,7 +59,8 @@ void Raster::add(const std::array<Corner, 3>& corners, double edge) {
       if (depth <= row[x].depth) continue;
       const double value = mean(corners[0].value, corners[1].value, corners[2].value);
       double brightness = mean(corners[0].light, corners[1].light, corners[2].light);
-      if (w0 < rim[0] || w1 < rim[1] || w2 < rim[2]) brightness *= 1.0 - edge;
+      brightness *=
+          1.0 - std::max({w0 < rim[0] ? edge[0] : 0.0, w1 < rim[1] ? edge[1] : 0.0, w2 < rim[2] ? edge[2] : 0.0});
       const Rgb& color = std::isnan(value) ? kMissing : palette_[byte(value)];
       row[x] = {depth, byte(brightness * color.red), byte(brightness * color.green), byte(brightness * color.blue), 1};
     }

@@ -25,9 +25,9 @@ class Raster {
   /// Covers the part of the page that lies in `area` (rounded outwards).
   Raster(const Area& area, const Palette& palette);
 
-  /// Adds a triangle; `edge` in [0, 1] is how much its rim is darkened. Nothing happens for corners that are not
-  /// finite.
-  void add(const std::array<Corner, 3>& corners, double edge);
+  /// Adds a triangle; `edge` in [0, 1] is how much its rim is darkened, opposite to each of its corners. Nothing
+  /// happens for corners that are not finite.
+  void add(const std::array<Corner, 3>& corners, const std::array<double, 3>& edge);
 
   /// How it is painted.
   struct Paint {

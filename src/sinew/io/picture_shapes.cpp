@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 namespace sinew::io {
 namespace {
@@ -18,6 +19,34 @@ constexpr int kSides = 20;  ///< of a rod's cross section
 Eigen::VectorXd displacement(const Eigen::Matrix3Xd& before, const Eigen::Matrix3Xd& now) {
   if (before.cols() != now.cols()) return Eigen::VectorXd::Constant(now.cols(), NAN);
   return (now - before).colwise().norm();
+}
+
+/// The triangles that solid::surface makes of a face.
+std::vector<solid::Triangle> triangles_of(const solid::Cell& cell, const solid::Face& face) {
+  solid::CellFace nodes{face.nodes, {}};
+  for (int i = 0; i < face.nodes; ++i) nodes.node[i] = cell.node[face.node[i]];
+  return solid::triangles({nodes});
+}
+
+using Edge = std::pair<int, int>;  ///< nodes, ascending
+Edge edge_between(int a, int b) { return std::minmax(a, b); }
+
+/// Edges of triangles that are none of the mesh, because they cut a face in pieces; ascending.
+std::vector<Edge> cuts_through_faces(const std::vector<solid::Cell>& cells) {
+  std::vector<Edge> cuts, edges;
+  for (const solid::Cell& cell : cells) {
+    if (cell.kind == solid::Kind::tet4) continue;
+    for (const solid::Face& face : solid::faces(cell.kind)) {
+      edges.clear();
+      for (const solid::Triangle& triangle : triangles_of(cell, face))
+        for (int i = 0; i < 3; ++i) edges.push_back(edge_between(triangle[i], triangle[(i + 1) % 3]));
+      std::sort(edges.begin(), edges.end());
+      for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+        if (edges[i] == edges[i + 1]) cuts.push_back(edges[i]);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  return cuts;
 }
 
 /// Of a face with this unit normal in view axes (x right, y down, z to the viewer), lit from the upper left.
@@ -38,15 +67,14 @@ std::vector<double> surface_values(const SolidSnapshot& solid, PictureColor colo
       const int node = solid.surface[i / 3][i % 3];
       if (node >= 0 && node < moved.size()) values[i] = moved(node);
     }
-  } else if (solid.von_mises.size() == static_cast<Eigen::Index>(solid.tetrahedra.size())) {
+  } else if (solid.von_mises.size() == static_cast<Eigen::Index>(solid.cells.size())) {
     std::map<solid::Triangle, double> of_face;  // by sorted nodes
-    for (std::size_t t = 0; t < solid.tetrahedra.size(); ++t) {
-      for (int without = 0; without < 4; ++without) {
-        solid::Triangle face{};
-        for (int i = 0, k = 0; i < 4; ++i)
-          if (i != without) face[k++] = solid.tetrahedra[t][i];
-        std::sort(face.begin(), face.end());
-        of_face[face] = solid.von_mises(static_cast<Eigen::Index>(t));
+    for (std::size_t c = 0; c < solid.cells.size(); ++c) {
+      for (const solid::Face& face : solid::faces(solid.cells[c].kind)) {
+        for (solid::Triangle triangle : triangles_of(solid.cells[c], face)) {
+          std::sort(triangle.begin(), triangle.end());
+          of_face[triangle] = solid.von_mises(static_cast<Eigen::Index>(c));
+        }
       }
     }
     for (std::size_t s = 0; s < solid.surface.size(); ++s) {
@@ -76,6 +104,7 @@ Scale scale_of(std::vector<double> values, PictureColor color) {
 
 void add_surface(Raster& raster, const Eigen::Matrix3Xd& nodes, const SolidSnapshot& solid,
                  const std::vector<double>& values, const Scale& scale, const PictureView& view, double edge) {
+  const std::vector<Edge> cuts = edge > 0.0 ? cuts_through_faces(solid.cells) : std::vector<Edge>();
   for (std::size_t s = 0; s < solid.surface.size(); ++s) {
     const solid::Triangle& face = solid.surface[s];
     if (!drawable(nodes, face[0]) || !drawable(nodes, face[1]) || !drawable(nodes, face[2])) continue;
@@ -87,7 +116,12 @@ void add_surface(Raster& raster, const Eigen::Matrix3Xd& nodes, const SolidSnaps
     const Vec3 normal = (corners[1].place - corners[0].place).cross(corners[2].place - corners[0].place);
     if (!(normal.norm() > 0.0)) continue;
     for (Corner& corner : corners) corner.light = light(normal.normalized());
-    raster.add(corners, edge);
+    std::array<double, 3> rim{};
+    for (int i = 0; i < 3; ++i) {
+      const bool cut = std::binary_search(cuts.begin(), cuts.end(), edge_between(face[(i + 1) % 3], face[(i + 2) % 3]));
+      rim[i] = cut ? 0.0 : edge;
+    }
+    raster.add(corners, rim);
   }
 }
 
@@ -136,10 +170,10 @@ void add_tube(Raster& raster, const RodSnapshot& rod, const Eigen::VectorXd& val
     const bool end = i == 0 || i + 1 == path.size();
     for (int k = 0; k < kSides; ++k) {
       const int next = (k + 1) % kSides;
-      if (end) raster.add({Corner{path[i], value[i], 0.9}, ring[k], ring[next]}, 0.0);
+      if (end) raster.add({Corner{path[i], value[i], 0.9}, ring[k], ring[next]}, {});
       if (i == 0) continue;
-      raster.add({last[k], last[next], ring[k]}, 0.0);
-      raster.add({ring[k], last[next], ring[next]}, 0.0);
+      raster.add({last[k], last[next], ring[k]}, {});
+      raster.add({ring[k], last[next], ring[next]}, {});
     }
     last = ring;
   }

@@ -1,6 +1,6 @@
 // Couplings: what ties a rod to something else. A kind is a struct in the scene, a table here and a line in `coupling`.
 #include "sinew/io/scene_objects.hpp"
-#include "sinew/io/scene_values.hpp"
+#include "sinew/io/scene_regions.hpp"
 
 namespace sinew::io {
 namespace {
@@ -22,25 +22,6 @@ Type<Slide> slide() {
         field<Slide>({"reach", optional, "how far outside the mesh a point may lie [m]", "2 mm"}, &Slide::reach,
                      quantity(Dimension::length, at_least(0.0)))},
        {at_most_one({"points", "channel"})}});
-}
-
-/// Some of the axes x, y, z.
-Type<std::array<bool, 3>> axes() {
-  enum class Axis { x, y, z };
-  const Type<std::vector<Axis>> some = distinct<Axis>("axes", {"x", "y", "z"}, {0, 3});
-  const auto read = [=](const At& at) {
-    std::array<bool, 3> held = {};
-    for (const Axis axis : some.read(at)) held[static_cast<std::size_t>(axis)] = true;
-    return held;
-  };
-  const auto show = [=](const std::array<bool, 3>& held) {
-    std::vector<Axis> listed;
-    for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
-      if (held[static_cast<std::size_t>(axis)]) listed.push_back(axis);
-    }
-    return some.show(listed);
-  };
-  return {read, some.schema, show};
 }
 
 Type<Tie> tie() {
@@ -67,9 +48,9 @@ Type<Tie> tie() {
         field<Tie>({"other_at", optional, "the abscissa on the other rod [m]; its tip if left out", "50 mm"},
                    &Tie::other_at, quantity(Dimension::length, at_least(0.0))),
         field<Tie>({"along", optional, "the axes of the holder along which it is held", "[x, y, z]"}, &Tie::along,
-                   axes()),
+                   axes({0, 3})),
         field<Tie>({"about", optional, "the axes of the holder about which it is held", "[x, y, z]"}, &Tie::about,
-                   axes()),
+                   axes({0, 3})),
         field<Tie>({"reach", optional, "how far outside the solid's mesh the point may lie [m]", "2 mm"}, &Tie::reach,
                    quantity(Dimension::length, at_least(0.0)))},
        {at_most_one({"frame", "solid", "other"}), needs("other_at", "other"), needs("reach", "solid")},

@@ -16,6 +16,8 @@ Type<Output> output();
 
 /// Of a rod, or of a part of one.
 Type<CrossSection> cross_section();
+/// Of a solid, or of a part of one.
+Type<SolidMaterial> solid_material();
 /// A section whose stiffness is given wants no modulus.
 enum class Wants { modulus, nothing };
 Type<RodMaterial> rod_material(Wants wants);

@@ -1,8 +1,39 @@
 // Outputs: what is recorded of which material point.
 #include "sinew/io/scene_objects.hpp"
-#include "sinew/io/scene_values.hpp"
+#include "sinew/io/scene_regions.hpp"
 
 namespace sinew::io {
+namespace {
+
+/// The region of a reaction.
+Field<Output> region() {
+  struct Holder {
+    Region region;
+  };
+  const Type<Holder> type =
+      map<Holder>({"a region", region_fields<Holder>(&Holder::region), {exactly_one(region_names())}});
+  return {{"region", Need::optional, "whose held nodes a reaction is summed over; all of them if left out",
+           "{box: [[0, 0, 0], [5 mm, 1 cm, 1 cm]]}"},
+          [=](Output& output, const At& at) { output.region = type.read(at).region; },
+          type.schema};
+}
+
+/// A solid's outputs are of a point, but for a reaction.
+Rule point_unless_reaction() {
+  const auto check = [](const At& at, const std::vector<Key>&) {
+    if (!at.has("solid")) return;
+    const bool reaction = at.says("quantity", "reaction");
+    if (!reaction && !at.has("point"))
+      at.refuse_key("solid", "is given without `point`", "add `point`, or remove `solid`");
+    if (reaction && at.has("point"))
+      at.refuse_key("point", "has no meaning for a reaction", "give a `region`, or nothing for all that is held");
+  };
+  const Json reaction = says_schema("quantity", "reaction");
+  return {check, {{"if", {{"required", {"solid"}}, {"not", reaction}}}, {"then", {{"required", {"point"}}}}}};
+}
+
+}  // namespace
+
 Type<Output> output() {
   using enum Need;
   const auto x = [](Output& o) -> Vec3& { return o.point.x; };
@@ -21,10 +52,14 @@ Type<Output> output() {
                       quantity(Dimension::length, at_least(0.0))),
         field<Output>(
             {"quantity", optional,
-             "what is recorded there: the position, or of a rod also strain, force, moment or stress", "strain"},
-            &Output::quantity, word_of<Quantity>({"position", "strain", "force", "moment", "stress"}))},
-       {exactly_one({"solid", "rod"}), needs("solid", "point"), needs("point", "solid"), needs("in", "solid"),
-        needs("reach", "solid"), needs("rod", "at"), needs("at", "rod"), only_with("solid", "quantity", "position")}});
+             "what is recorded there: position, strain or stress; of a solid also displacement, or the reaction of all "
+             "that is held in a region; of a rod also force or moment",
+             "strain"},
+            &Output::quantity,
+            word_of<Quantity>({"position", "displacement", "strain", "force", "moment", "stress", "reaction"})),
+        region()},
+       {exactly_one({"solid", "rod"}), needs("point", "solid"), needs("in", "solid"), needs("reach", "solid"),
+        needs("region", "solid"), needs("rod", "at"), needs("at", "rod"), point_unless_reaction()}});
 }
 
 }  // namespace sinew::io

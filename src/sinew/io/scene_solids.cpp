@@ -2,46 +2,50 @@
 #include <fmt/format.h>
 
 #include "sinew/io/scene_objects.hpp"
-#include "sinew/io/scene_values.hpp"
+#include "sinew/io/scene_regions.hpp"
 
 namespace sinew::io {
 namespace {
 
 using enum Need;
 
-Type<Box> region() {
-  const auto set_corners = [](Box& box, const std::vector<Vec3>& corners) {
-    box.lower = corners[0];
-    box.upper = corners[1];
-  };
-  const auto check = [](const std::vector<Vec3>& corners, const At& at) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (corners[0][axis] <= corners[1][axis]) continue;
-      at.refuse(fmt::format("must have its lower corner first: {} > {} m along {}", corners[0][axis], corners[1][axis],
-                            "xyz"[axis]),
-                "swap the two numbers of this axis");
-    }
-    if (corners[0] == corners[1]) at.refuse("must not be empty: both corners are the same point", "enlarge the box");
-  };
-  const Type<std::vector<Vec3>> corners =
-      list<Vec3>("corners, lower then upper", vec3(Dimension::length), {2, 2}, check);
-  Field<Box> box = {{"box", required, "the lower and the upper corner of a box [m]", "[[0, 0, 0], [5 mm, 1 cm, 1 cm]]"},
-                    [=](Box& target, const At& at) { set_corners(target, corners.read(at)); },
-                    corners.schema};
-  return map<Box>(
-      {"a region",
-       {box,
-        field<Box>({"in", optional, "where the corners are given, in the object before its pose or the world", "world"},
-                   &Box::in, in())}});
-}
-
-Type<std::vector<Box>> regions() {
-  const Type<Box> one = region();
-  const Type<std::vector<Box>> several = list<Box>("regions", one, {1});
-  return {[=](const At& at) { return at.is(Node::Kind::list) ? several.read(at) : std::vector<Box>{one.read(at)}; },
+/// One, or a list of several.
+template <class V>
+Type<std::vector<V>> one_or_more(const std::string& what, Type<V> one) {
+  const Type<std::vector<V>> several = list<V>(what, one, {1});
+  return {[=](const At& at) { return at.is(Node::Kind::list) ? several.read(at) : std::vector<V>{one.read(at)}; },
           [=] {
             return any_of({one.schema(), several.schema()});
           }};
+}
+
+Type<Held> held() {
+  return map<Held>(
+      {"a region",
+       together<Held>(region_fields<Held>(&Held::region),
+                      {field<Held>({"axes", optional, "the axes of the world along which it is held", "[x, y]"},
+                                   &Held::axes, axes({1, 3})),
+                       field<Held>({"frame", optional, "the frame that holds and moves it; the solid's own", "hand"},
+                                   &Held::frame, name_of("frame"))}),
+       {exactly_one(region_names())}});
+}
+
+Type<Spring> spring() {
+  return map<Spring>({"springs",
+                      together<Spring>(region_fields<Spring>(&Spring::region),
+                                       {field<Spring>({"stiffness", required,
+                                                       "along x, y and z, all nodes together [N/m]", "[0, 0, 200 N/m]"},
+                                                      &Spring::stiffness, vec3(Dimension::line_load))}),
+                      {exactly_one(region_names())}});
+}
+
+Type<SolidPart> part() {
+  return map<SolidPart>({"a part of a solid",
+                         together<SolidPart>(region_fields<SolidPart>(&SolidPart::region),
+                                             {field<SolidPart>({"material", required, "what it is made of",
+                                                                "{young: 2 MPa, poisson: 0.45}"},
+                                                               &SolidPart::material, solid_material())}),
+                         {exactly_one(region_names())}});
 }
 
 Type<std::filesystem::path> file_name() {
@@ -49,16 +53,16 @@ Type<std::filesystem::path> file_name() {
   return {[=](const At& at) { return std::filesystem::path(name.read(at)); }, name.schema};
 }
 
-Type<SolidMaterial> solid_material() {
-  using M = SolidMaterial;
-  const Range poisson = {-1.0, 0.5, true, true, " in a solid", "use 0.49 for a nearly incompressible silicone"};
-  return map<M>(
-      {"a solid's material",
-       {field<M>({"law", optional, "the constitutive law", "corotational"}, &M::law, word_of<Law>({"corotational"})),
-        field<M>({"young", required, "Young's modulus [Pa]", "600 kPa"}, &M::young,
-                 quantity(Dimension::pressure, above(0.0))),
-        field<M>({"poisson", required, "Poisson's ratio", "0.45"}, &M::poisson,
-                 quantity(Dimension::number, poisson))}});
+/// The mass is known from one of mass and density, or from the materials' own densities.
+Rule mass_or_density() {
+  const Rule one = exactly_one({"mass", "density"}), none = at_most_one({"mass", "density"});
+  const auto check = [=](const At& at, const std::vector<Key>& keys) {
+    const bool own =
+        at.has("material") && at.child("material").is(Node::Kind::map) && at.child("material").has("density");
+    (own ? none : one).check(at, keys);
+  };
+  const Json own = {{"required", {"material"}}, {"properties", {{"material", {{"required", {"density"}}}}}}};
+  return {check, {{"if", own}, {"then", none.schema}, {"else", one.schema}}};
 }
 
 Type<Rayleigh> rayleigh() {
@@ -75,9 +79,8 @@ Type<Rayleigh> rayleigh() {
 Type<Solid> solid() {
   return map<Solid>(
       {"a solid",
-       {field<Solid>(
-            {"mesh", required, "the file with its tetrahedra, looked up from the scene's folder", "finger.vtk"},
-            &Solid::mesh, file_name()),
+       {field<Solid>({"mesh", required, "the file with its elements, looked up from the scene's folder", "finger.vtk"},
+                     &Solid::mesh, file_name()),
         field<Solid>({"scale", optional, "what mesh coordinates are multiplied by to be in m", "0.001"}, &Solid::scale,
                      quantity(Dimension::number, above(0.0))),
         field<Solid>({"pose", optional, "where the solid stands, after scale", "{translate: [0, 20 mm, 0]}"},
@@ -92,10 +95,18 @@ Type<Solid> solid() {
                      quantity(Dimension::density, above(0.0))),
         field<Solid>({"rayleigh", optional, "its damping", "{mass: 0.1, stiffness: 0.1}"}, &Solid::rayleigh,
                      rayleigh()),
-        field<Solid>({"fixed", optional, "a region, or a list of regions, whose nodes are clamped",
+        field<Solid>({"mass_matrix", optional, "lumped at the nodes, or consistent", "lumped"}, &Solid::mass_matrix,
+                     word_of<solid::MassMatrix>({"lumped", "consistent"})),
+        field<Solid>({"parts", optional, "regions of another material",
+                      "[{group: bone, material: {young: 1 GPa, poisson: 0.3}}]"},
+                     &Solid::parts, list<SolidPart>("parts", part(), {1})),
+        field<Solid>({"fixed", optional, "a region, or a list of regions, whose nodes are held",
                       "{box: [[0, 0, 0], [5 mm, 1 cm, 1 cm]]}"},
-                     &Solid::fixed, regions())},
-       {exactly_one({"mass", "density"})}});
+                     &Solid::fixed, one_or_more<Held>("regions", held())),
+        field<Solid>({"springs", optional, "springs to where it is at rest",
+                      "[{surface: true, stiffness: [10 N/m, 10 N/m, 10 N/m]}]"},
+                     &Solid::springs, list<Spring>("springs", spring(), {1}))},
+       {mass_or_density()}});
 }
 
 }  // namespace sinew::io

@@ -14,7 +14,7 @@
 namespace sinew::io {
 namespace {
 
-constexpr int kTetrahedron = 10, kPolyline = 4;  // cell types of VTK
+constexpr std::uint8_t kPolyline = 4;  // cell type of VTK
 constexpr const char* kByteOrder = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 constexpr const char* kCollectionEnd = "  </Collection>\n</VTKFile>\n";
 
@@ -64,9 +64,22 @@ std::string doubles(const std::string& name, const Eigen::MatrixXd& values) {  /
                static_cast<std::size_t>(values.size()));
 }
 
-/// Cells of equal or varying length given as node lists.
-std::string cells(const std::vector<std::int64_t>& connectivity, const std::vector<std::int64_t>& ends, int type) {
-  const std::vector<std::uint8_t> types(ends.size(), static_cast<std::uint8_t>(type));
+/// VTK's number of an element; the nodes stand in VTK's order already.
+std::uint8_t cell_type(solid::Kind kind) {
+  switch (kind) {
+    case solid::Kind::tet4:
+      return 10;
+    case solid::Kind::tet10:
+      return 24;
+    case solid::Kind::hex8:
+      break;
+  }
+  return 12;
+}
+
+/// Cells given as node lists of any length.
+std::string cells(const std::vector<std::int64_t>& connectivity, const std::vector<std::int64_t>& ends,
+                  const std::vector<std::uint8_t>& types) {
   return "<Cells>\n" + array("Int64", "Name=\"connectivity\"", connectivity.data(), connectivity.size()) +
          array("Int64", "Name=\"offsets\"", ends.data(), ends.size()) +
          array("UInt8", "Name=\"types\"", types.data(), types.size()) + "</Cells>\n";
@@ -98,15 +111,17 @@ std::string plain(const std::string& name) {
 
 std::string vtu_text(const SolidSnapshot& solid, double time) {
   std::vector<std::int64_t> connectivity, ends;
-  for (const solid::Tetrahedron& tetrahedron : solid.tetrahedra) {
-    connectivity.insert(connectivity.end(), tetrahedron.begin(), tetrahedron.end());
+  std::vector<std::uint8_t> types;
+  for (const solid::Cell& cell : solid.cells) {
+    connectivity.insert(connectivity.end(), cell.nodes().begin(), cell.nodes().end());
     ends.push_back(static_cast<std::int64_t>(connectivity.size()));
+    types.push_back(cell_type(cell.kind));
   }
   std::string point_data, cell_data;
   if (solid.rest.cols() == solid.nodes.cols()) point_data = doubles("displacement", solid.nodes - solid.rest);
-  if (solid.von_mises.size() == static_cast<Eigen::Index>(solid.tetrahedra.size()))
+  if (solid.von_mises.size() == static_cast<Eigen::Index>(solid.cells.size()))
     cell_data = doubles("von_mises", solid.von_mises.transpose());
-  return grid(time, solid.nodes, ends.size(), cells(connectivity, ends, kTetrahedron), point_data, cell_data);
+  return grid(time, solid.nodes, ends.size(), cells(connectivity, ends, types), point_data, cell_data);
 }
 
 std::string vtu_text(const RodSnapshot& rod, double time) {
@@ -114,6 +129,7 @@ std::string vtu_text(const RodSnapshot& rod, double time) {
   std::vector<std::int64_t> connectivity, ends;
   for (Eigen::Index i = 0; i < samples; ++i) connectivity.push_back(i);
   if (samples > 0) ends.push_back(samples);
+  const std::vector<std::uint8_t> types(ends.size(), kPolyline);
 
   std::string data;
   const auto add = [&](const std::string& name, const Eigen::MatrixXd& values) {
@@ -124,7 +140,7 @@ std::string vtu_text(const RodSnapshot& rod, double time) {
   add("tangent", rod.tangents);
   for (const PointField& field : rod.fields) add(field.name, field.values);
   add("von_mises", rod.von_mises.transpose());
-  return grid(time, rod.points, ends.size(), cells(connectivity, ends, kPolyline), data, "");
+  return grid(time, rod.points, ends.size(), cells(connectivity, ends, types), data, "");
 }
 
 SeriesWriter::SeriesWriter(std::filesystem::path folder) : folder_(std::move(folder)), taken_{"run"} {

@@ -27,13 +27,6 @@ rod::Tendon make_tendon(const Model& model, int rod, const Tendon& tendon, const
   return own;
 }
 
-void check_drive(const Drive& drive, const std::string& path) {
-  const Table* table = std::get_if<Table>(&drive);
-  if (table && (table->times.empty() || table->times.size() != table->values.size()))
-    reject(path, std::to_string(table->times.size()) + " times",
-           "a table needs as many times as values, and at least one", "give a constant or a table");
-}
-
 }  // namespace
 
 void build_actuator(Model& model, const std::string& name, const Actuator& actuator) {
@@ -87,38 +80,6 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
   }
   own.unknown = motion.axis;  // until unknowns are numbered
   model.actuators.push_back(own);
-}
-
-void build_load(Model& model, const std::string& name, const Load& load) {
-  const std::string path = "loads." + name;
-  LoadModel own;
-  own.name = name;
-  own.rod = find_rod(model, load.rod, path + ".rod");
-  own.force = load.force;
-  own.moment = load.moment;
-  own.follower = load.follower;
-  own.factor = load.factor;
-  check_drive(load.factor, path + ".factor");
-  if (load.from.has_value() != load.to.has_value() || (load.from && load.at))
-    reject(path, name, "needs `at` for a point load, or `from` and `to` for a distributed one",
-           "give one or the other");
-  if (load.from) {
-    const double from = abscissa_on(model, own.rod, load.from, path + ".from");
-    const double to = abscissa_on(model, own.rod, load.to, path + ".to");
-    if (!(to > from))
-      reject(path + ".to", text(to) + " m", "must be greater than `from`, " + text(from) + " m",
-             "loads run towards the tip");
-    for (const rod::Section& section : model.rods[own.rod].rod.sections) {
-      const double begin = std::max(from, section.begin), end = std::min(to, section.end);
-      if (!(end > begin)) continue;
-      const rod::GaussRule& rule = rod::gauss_rule(4);
-      for (std::size_t g = 0; g < rule.node.size(); ++g)
-        own.at.push_back({begin + (end - begin) * rule.node[g], (end - begin) * rule.weight[g]});
-    }
-  } else {
-    own.at.push_back({abscissa_on(model, own.rod, load.at, path + ".at"), 1.0});
-  }
-  model.loads.push_back(own);
 }
 
 }  // namespace sinew::building

@@ -2,6 +2,34 @@
 
 namespace sinew::building {
 
+namespace {
+
+bool of_solids(Quantity quantity) { return quantity == Quantity::displacement || quantity == Quantity::reaction; }
+bool of_rods(Quantity quantity) { return quantity == Quantity::force || quantity == Quantity::moment; }
+
+void on_solid(Model& model, const Output& output, const std::string& path, OutputModel& own) {
+  if (of_rods(output.quantity))
+    reject(path + ".quantity", "", "is known of rods only", "write `quantity: stress` or `reaction`, or name a rod");
+  own.solid = find(model.scene.solids, *output.solid, path + ".solid", "solid");
+  const SolidModel& solid = model.solids[own.solid];
+  if (output.quantity == Quantity::reaction) {
+    own.nodes.assign(static_cast<std::size_t>(solid.body.nodes()), !output.region);
+    if (!output.region) return;
+    for (const int node : select(solid, *output.region, path).nodes) own.nodes[node] = true;
+    return;
+  }
+  const Pose& pose = model.scene.solids[own.solid].second.pose;
+  const Vec3 x =
+      output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);
+  own.where = embed_within(solid, x, output.reach, path + ".point", "the point");
+  if (own.where.distance > 0.0) {
+    model.warnings.push_back(path + ": the point lies " + text(own.where.distance) +
+                             " m outside the mesh and is extrapolated");
+  }
+}
+
+}  // namespace
+
 void build_output(Model& model, const std::string& name, const Output& output) {
   const std::string path = "outputs." + name;
   OutputModel own;
@@ -12,19 +40,10 @@ void build_output(Model& model, const std::string& name, const Output& output) {
            "write `{solid: NAME, point: [x, y, z]}` or `{rod: NAME, at: s}`");
   }
   if (output.solid) {
-    if (output.quantity != Quantity::position)
-      reject(path + ".quantity", "", "is known of rods only", "write `quantity: position`, or name a rod");
-    own.solid = find(model.scene.solids, *output.solid, path + ".solid", "solid");
-    const SolidModel& solid = model.solids[own.solid];
-    const Pose& pose = model.scene.solids[own.solid].second.pose;
-    const Vec3 x =
-        output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);
-    own.where = embed_within(solid, x, output.reach, path + ".point", "the point");
-    if (own.where.distance > 0.0) {
-      model.warnings.push_back(path + ": the point lies " + text(own.where.distance) +
-                               " m outside the mesh and is extrapolated");
-    }
+    on_solid(model, output, path, own);
   } else {
+    if (of_solids(output.quantity))
+      reject(path + ".quantity", "", "is known of solids only", "write `position` or `force`, or name a solid");
     own.rod = find_rod(model, *output.rod, path + ".rod");
     own.abscissa = abscissa_on(model, own.rod, output.at, path + ".at");
   }

@@ -11,7 +11,7 @@ namespace sinew::building {
 
 solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
                                   const std::string& path, const std::string& what) {
-  solid::EmbeddedPoint point = solid::embed(solid.body.rest, solid.body.tetrahedra, x);
+  solid::EmbeddedPoint point = solid::embed(solid.body.rest, solid.body.cells, x);
   const double diagonal = (solid.body.rest.rowwise().maxCoeff() - solid.body.rest.rowwise().minCoeff()).norm();
   const double limit = reach.value_or(0.1 * diagonal);
   if (point.distance > limit) {
@@ -25,10 +25,12 @@ solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const 
 
 namespace {
 
+bool free_anywhere(const SolidModel& solid, int node) { return solid.body.unknown.col(node).maxCoeff() >= 0; }
+
 bool all_clamped(const SolidModel& solid, const solid::EmbeddedPoint& point) {
-  for (int c = 0; c < 4; ++c) {
-    if (std::abs(point.weights[c]) > 1e-9 && solid.body.unknown[solid.body.tetrahedra[point.element][c]] >= 0)
-      return false;
+  const std::span<const int> nodes = solid.body.cells[point.element].nodes();
+  for (std::size_t c = 0; c < nodes.size(); ++c) {
+    if (std::abs(point.weights[static_cast<Eigen::Index>(c)]) > 1e-9 && free_anywhere(solid, nodes[c])) return false;
   }
   return true;
 }
@@ -41,11 +43,12 @@ constexpr double kNewPart = 0.2;
 /// Gram matrix of points on free nodes: products of their shape function weights.
 Eigen::MatrixXd weight_gram(const SolidModel& solid, const std::vector<PointModel>& points) {
   const auto n = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(n, solid.body.free_nodes);
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(n, solid.body.nodes());
   for (Eigen::Index i = 0; i < n; ++i) {
-    for (int c = 0; c < 4; ++c) {
-      const int node = solid.body.unknown[solid.body.tetrahedra[points[i].where.element][c]];
-      if (node >= 0) weights(i, node) += points[i].where.weights[c];
+    const solid::EmbeddedPoint& where = points[i].where;
+    const std::span<const int> nodes = solid.body.cells[where.element].nodes();
+    for (std::size_t c = 0; c < nodes.size(); ++c) {
+      if (free_anywhere(solid, nodes[c])) weights(i, nodes[c]) += where.weights[static_cast<Eigen::Index>(c)];
     }
   }
   return weights * weights.transpose();

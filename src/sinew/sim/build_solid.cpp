@@ -1,19 +1,19 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/solid_matrix.hpp"
 
 namespace sinew::building {
 
 namespace {
 
-/// Nodes in use, renumbered in their order.
-void compact(solid::Mesh& mesh) {
+/// Nodes in use, renumbered in their order; returns the new number of each, or -1.
+std::vector<int> compact(solid::Mesh& mesh) {
   std::vector<int> number(mesh.nodes.cols(), -1);
-  for (const auto& t : mesh.tetrahedra) {
-    for (int node : t) number[node] = 0;
+  for (const solid::Cell& cell : mesh.cells) {
+    for (const int node : cell.nodes()) number[node] = 0;
   }
   int used = 0;
   for (std::size_t i = 0; i < number.size(); ++i) {
@@ -22,54 +22,21 @@ void compact(solid::Mesh& mesh) {
     number[i] = used++;
   }
   mesh.nodes.conservativeResize(3, used);
-  for (auto& t : mesh.tetrahedra) {
-    for (int& node : t) node = number[node];
+  for (solid::Cell& cell : mesh.cells) {
+    for (int i = 0; i < solid::node_count(cell.kind); ++i) cell.node[i] = number[cell.node[i]];
   }
-}
-
-/// Pattern of the lower triangle and where every element's blocks go in it.
-void make_pattern(SolidModel& model) {
-  const solid::Body& body = model.body;
-  std::vector<std::set<int>> below(body.free_nodes);  // per column node, rows >= it
-  for (const auto& t : body.tetrahedra) {
-    for (int a : t) {
-      for (int b : t) {
-        if (body.unknown[b] >= 0 && body.unknown[a] >= body.unknown[b]) below[body.unknown[b]].insert(body.unknown[a]);
-      }
+  for (auto& [name, group] : mesh.groups) {
+    const auto unused = [&number](int node) { return number[node] < 0; };
+    std::erase_if(group.nodes, unused);
+    for (int& node : group.nodes) node = number[node];
+    std::erase_if(group.faces, [&](const solid::CellFace& face) {
+      return std::any_of(face.nodes().begin(), face.nodes().end(), unused);
+    });
+    for (solid::CellFace& face : group.faces) {
+      for (int i = 0; i < face.count; ++i) face.node[i] = number[face.node[i]];
     }
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int column = 0; column < body.free_nodes; ++column) {
-    for (int row : below[column]) {
-      for (int j = 0; j < 3; ++j) {
-        for (int i = row == column ? j : 0; i < 3; ++i) entries.emplace_back(3 * row + i, 3 * column + j, 0.0);
-      }
-    }
-  }
-  model.matrix.resize(3 * body.free_nodes, 3 * body.free_nodes);
-  model.matrix.setFromTriplets(entries.begin(), entries.end());
-  model.matrix.makeCompressed();
-  const auto position = [&](int row, int column) {
-    const int* begin = model.matrix.innerIndexPtr() + model.matrix.outerIndexPtr()[column];
-    const int* end = model.matrix.innerIndexPtr() + model.matrix.outerIndexPtr()[column + 1];
-    return static_cast<int>(std::lower_bound(begin, end, row) - model.matrix.innerIndexPtr());
-  };
-  for (int i = 0; i < 3 * body.free_nodes; ++i) model.diagonal.push_back(position(i, i));
-  std::array<int, 9> absent;
-  absent.fill(-1);
-  model.block.assign(16 * body.tetrahedra.size(), absent);
-  for (std::size_t e = 0; e < body.tetrahedra.size(); ++e) {
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        const int row = body.unknown[body.tetrahedra[e][a]], column = body.unknown[body.tetrahedra[e][b]];
-        if (row < 0 || column < 0 || row < column) continue;
-        for (int i = 0; i < 9; ++i) {
-          if (row == column && i % 3 < i / 3) continue;
-          model.block[16 * e + 4 * a + b][i] = position(3 * row + i % 3, 3 * column + i / 3);
-        }
-      }
-    }
-  }
+  return number;
 }
 
 /// Reads a mesh. What is wrong inside it carries the mesh's own file and line; a path that leads nowhere is the field's
@@ -84,6 +51,42 @@ solid::Mesh read_named(const MeshReader& read_mesh, const std::filesystem::path&
   }
 }
 
+/// The material as bodies want it. Rayleigh's share of the stiffness is a viscosity of the same shape.
+solid::Material make_material(const SolidMaterial& material, const Solid& solid, double density,
+                              const std::string& path) {
+  const solid::Lame moduli = solid::lame(material.law);
+  if (!(moduli.mu > 0.0 && 3.0 * moduli.lambda + 2.0 * moduli.mu > 0.0 && std::isfinite(moduli.lambda))) {
+    reject(
+        path,
+        "shear modulus " + text(moduli.mu) + " Pa, bulk modulus " + text(moduli.lambda + 2.0 / 3.0 * moduli.mu) + " Pa",
+        "both must be greater than 0 and finite",
+        "give young > 0 and poisson between -1 and 0.5 (0.49 for a nearly incompressible silicone)");
+  }
+  if (!(material.viscosity >= 0.0))
+    reject(path + ".viscosity", text(material.viscosity) + " Pa s", "must not be negative", "leave it out for none");
+  const double b = solid.rayleigh.stiffness, eta = material.viscosity;
+  return {material.law, material.density.value_or(density), {b * moduli.mu + eta, b * moduli.lambda - 2.0 / 3.0 * eta}};
+}
+
+/// Holds the coordinates of the nodes in `fixed`, each by its frame.
+Eigen::Array<bool, 3, Eigen::Dynamic> hold(const Scene& scene, const Solid& solid, const std::string& path,
+                                           SolidModel& model) {
+  const Eigen::Index nodes = model.body.rest.cols();
+  Eigen::Array<bool, 3, Eigen::Dynamic> held = Eigen::Array<bool, 3, Eigen::Dynamic>::Constant(3, nodes, false);
+  model.carrier.assign(static_cast<std::size_t>(nodes), -1);
+  for (const Held& own : solid.fixed) {
+    const int frame = own.frame ? find_frame(scene, own.frame, path + ".fixed") : model.frame;
+    for (const int node : select(model, own.region, path + ".fixed").nodes) {
+      if (held.col(node).any() && model.carrier[node] != frame)
+        reject(path + ".fixed", text(Vec3(model.body.rest.col(node))) + " m", "a node there is held by two frames",
+               "let every node be held by one frame");
+      model.carrier[node] = frame;
+      for (int axis = 0; axis < 3; ++axis) held(axis, node) = held(axis, node) || own.axes[axis];
+    }
+  }
+  return held;
+}
+
 }  // namespace
 
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh) {
@@ -91,65 +94,57 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   SolidModel model;
   model.name = name;
   model.frame = find_frame(scene, solid.frame, path);
-  require_positive(solid.material.young, path + ".material.young", "give Young's modulus, for example 600 kPa");
-  if (!(solid.material.poisson > -1.0 && solid.material.poisson < 0.5)) {
-    reject(path + ".material.poisson", text(solid.material.poisson), "must lie between -1 and 0.5 in a solid",
-           "use 0.49 for a nearly incompressible silicone");
-  }
   require_positive(solid.scale, path + ".scale", "0.001 if the mesh is in millimetres");
 
   solid::Mesh mesh =
       read_named(read_mesh, solid.mesh.is_absolute() ? solid.mesh : scene.folder / solid.mesh, path + ".mesh");
-  compact(mesh);
-  const Eigen::Matrix3Xd scaled = solid.scale * mesh.nodes;
+  model.mesh.number = compact(mesh);
+  model.mesh.object = solid.scale * mesh.nodes;
+  model.mesh.boundary = solid::boundary(mesh.cells);
+  model.mesh.groups = std::move(mesh.groups);
   const Placement pose = stand(scene, model.frame, solid.pose);
-  const Eigen::Matrix3Xd world = (pose.R * scaled).colwise() + pose.p;
-  const double diagonal = (world.rowwise().maxCoeff() - world.rowwise().minCoeff()).norm();
-
-  if (!(diagonal > kSmallest && diagonal < kLargest && world.allFinite())) {
-    reject(path + ".scale", text(solid.scale), "makes the body " + text(diagonal) + " m large",
+  const Eigen::Matrix3Xd world = (pose.R * model.mesh.object).colwise() + pose.p;
+  model.mesh.diagonal = (world.rowwise().maxCoeff() - world.rowwise().minCoeff()).norm();
+  if (!(model.mesh.diagonal > kSmallest && model.mesh.diagonal < kLargest && world.allFinite())) {
+    reject(path + ".scale", text(solid.scale), "makes the body " + text(model.mesh.diagonal) + " m large",
            "give the scale that turns mesh coordinates into metres, 0.001 for millimetres; check the pose");
   }
+  model.body.rest = world;  // for regions
+  model.body.cells = mesh.cells;
 
-  std::vector<bool> clamped(scaled.cols(), false);
-  for (std::size_t b = 0; b < solid.fixed.size(); ++b) {
-    const Box& box = solid.fixed[b];
-    const Eigen::Matrix3Xd& where = box.in == In::world ? world : scaled;
-    const double slack = 1e-9 * diagonal;
-    int count = 0;
-    for (Eigen::Index i = 0; i < where.cols(); ++i) {
-      if (((where.col(i) - box.lower).array() < -slack).any() || ((where.col(i) - box.upper).array() > slack).any())
-        continue;
-      clamped[i] = true;
-      ++count;
-    }
-    if (count == 0) {
-      reject(path + ".fixed", text(box.lower) + " .. " + text(box.upper) + " m", "no node of the mesh lies in this box",
-             "the nodes span " + text(Vec3(where.rowwise().minCoeff())) + " .. " +
-                 text(Vec3(where.rowwise().maxCoeff())) + " m " +
-                 (box.in == In::world ? "in the world" : "before the pose") + "; check scale and units");
-    }
-  }
-  const auto held = std::count(clamped.begin(), clamped.end(), true);
-  if (held < 3) {
-    reject(path + ".fixed", std::to_string(held) + " nodes",
-           "at least three nodes must be fixed, or the body falls or turns freely",
-           "add `fixed: {box: [[..], [..]]}` around the part that is held");
-  }
-  if (held == scaled.cols()) reject(path + ".fixed", "all nodes", "some node must be free", "make the box smaller");
-
-  double volume = 0.0;
-  for (const auto& t : mesh.tetrahedra) volume += solid::volume(scaled, t);
-  if (solid.mass.has_value() == solid.density.has_value()) {
+  const auto by_parts = std::count_if(solid.parts.begin(), solid.parts.end(),
+                                      [](const SolidPart& part) { return part.material.density.has_value(); });
+  const bool densities = solid.density || solid.material.density || by_parts > 0;
+  if (solid.mass.has_value() == densities)
     reject(path, "", "needs exactly one of mass and density", "give `mass: 75 g` or `density: 1070 kg/m^3`");
+  const double density = solid.density.value_or(1.0);
+  if (densities) require_positive(density, path + ".density", "give the density of the body");
+  if (solid.mass) require_positive(*solid.mass, path + ".mass", "give the mass of the body");
+
+  std::vector<solid::Material> materials = {make_material(solid.material, solid, density, path + ".material")};
+  std::vector<int> material(mesh.cells.size(), 0);
+  for (std::size_t i = 0; i < solid.parts.size(); ++i) {
+    const std::string own = path + ".parts." + std::to_string(i);
+    materials.push_back(make_material(solid.parts[i].material, solid, density, own + ".material"));
+    const std::vector<int> cells = select(model, solid.parts[i].region, own).cells;
+    if (cells.empty())
+      reject(own, "", "no cell of the mesh lies in this region with all its nodes", "enlarge the region");
+    for (const int cell : cells) material[cell] = static_cast<int>(i) + 1;
   }
-  const double mass = solid.mass ? *solid.mass : *solid.density * volume;
-  require_positive(mass, path + (solid.mass ? ".mass" : ".density"), "give the mass of the body");
-  model.surface = solid::surface(mesh.tetrahedra);
-  model.body = solid::make_body(world, mesh.tetrahedra, solid::lame(solid.material.young, solid.material.poisson), mass,
-                                clamped);
+  const auto held = hold(scene, solid, path, model);
+  if (held.all()) reject(path + ".fixed", "all nodes", "some node must be free", "make the region smaller");
+
+  model.body = solid::make_body(world, mesh.cells, materials, material, held, solid.mass_matrix, solid.mass);
   model.body.damping_mass = solid.rayleigh.mass;
-  model.body.damping_stiffness = solid.rayleigh.stiffness;
+  model.surface = solid::triangles(model.mesh.boundary);
+  for (std::size_t i = 0; i < solid.springs.size(); ++i) {
+    const Spring& spring = solid.springs[i];
+    const std::string own = path + ".springs." + std::to_string(i);
+    if (!(spring.stiffness.minCoeff() >= 0.0 && spring.stiffness.allFinite()))
+      reject(own + ".stiffness", text(spring.stiffness) + " N/m", "must not be negative", "give N/m along x, y and z");
+    if (model.springs.size() == 0) model.springs.setZero(3, model.body.nodes());
+    model.springs += spring.stiffness * shares(model, select(model, spring.region, own)).transpose();
+  }
   make_pattern(model);
   return model;
 }

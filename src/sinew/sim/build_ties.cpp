@@ -70,9 +70,8 @@ void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Ve
   model.solid_rows.push_back(row);  // the point held
   if (!tie.directors) return;
   const solid::Body& body = model.solids[solid].body;
-  for (int i = 0; i < 3; ++i) {  // length * F e_i = sum_a x_a (length * grad N_a . e_i)
-    row.where.weights = tie.length * body.gradients[where.element].row(i).transpose();
-    row.where.distance = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    row.where = solid::embed_vector(body.rest, body.cells, where, tie.length * Vec3::Unit(i));
     model.solid_rows.push_back(row);
   }
 }

@@ -39,6 +39,16 @@ Placement stand(const Scene& scene, int frame, const Pose& pose);
 /// Lengths beyond these bounds are a slip of units; their squares may not even be numbers.
 constexpr double kSmallest = 1e-9, kLargest = 1e6;  // [m]
 
+/// What a region holds of a solid; rejected if that is no node.
+struct Selection {
+  std::vector<int> nodes, cells;
+  std::vector<solid::CellFace> faces;  ///< of the boundary, outward
+};
+Selection select(const SolidModel& solid, const Region& region, const std::string& path);
+/// How a load on a selection is shared by all nodes of the solid: evenly over its faces, or if it has none its nodes.
+/// Adds up to 1.
+Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection);
+
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
 CableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
@@ -65,6 +75,9 @@ rod::Configuration start_shape(const RodModel& rod);
 /// The element that carries x, rejected beyond the reach.
 solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
                                   const std::string& path, const std::string& what);
+
+/// A table must have as many times as values.
+void check_drive(const Drive& drive, const std::string& path);
 
 void build_slide(Model& model, int number, const Slide& slide);
 void build_tie(Model& model, int number, const Tie& tie);

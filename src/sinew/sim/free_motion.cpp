@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "sinew/sim/clock.hpp"
+#include "sinew/sim/solid_loads.hpp"
+#include "sinew/sim/solid_matrix.hpp"
 
 namespace sinew {
 
@@ -33,61 +35,59 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
   SolidForces forces;
   Eigen::Matrix3Xd r =
       solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, &forces.scale);
+  const SolidModel& model = context.model.solids[number];
+  r += spring_forces(context, model, iterate.solids[number].x);
+  for (std::size_t i = 0; i < context.model.loads.size(); ++i) {
+    const SolidLoadModel* load = std::get_if<SolidLoadModel>(&context.model.loads[i].on);
+    if (!load || load->solid != number) continue;
+    const Eigen::Matrix3Xd acting = context.command.loads[i] * load_forces(*load, iterate.solids[number].x);
+    r -= acting;
+    forces.scale = std::max(forces.scale, acting.colwise().norm().maxCoeff());
+  }
   for (const SolidRow& row : context.model.solid_rows) {
     if (row.solid != number || !is_on(iterate, row)) continue;
-    for (int c = 0; c < 4; ++c)
-      r.col(body.tetrahedra[row.where.element][c]) -= row.where.weights[c] * iterate.lambda.segment<3>(row.row);  // H^T
+    const std::span<const int> nodes = body.cells[row.where.element].nodes();
+    for (std::size_t c = 0; c < nodes.size(); ++c)
+      r.col(nodes[c]) -= row.where.weights[static_cast<Eigen::Index>(c)] * iterate.lambda.segment<3>(row.row);  // H^T
   }
-  forces.r.resize(3 * body.free_nodes);
+  forces.r.resize(body.unknowns);
+  forces.reaction.resize(context.model.solids[number].held());
+  int held = 0;
   for (int i = 0; i < body.nodes(); ++i) {
-    if (body.unknown[i] < 0) continue;
-    forces.r.segment<3>(3 * body.unknown[i]) = r.col(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (body.unknown(axis, i) < 0) {
+        forces.reaction[held++] = r(axis, i);
+        r(axis, i) = 0.0;
+      } else {
+        forces.r[body.unknown(axis, i)] = r(axis, i);
+      }
+    }
     forces.largest = std::max(forces.largest, r.col(i).norm());
   }
   return forces;
 }
 
-namespace {
-
-/// A of (10), straight into the values of the sparse lower triangle.
-void assemble(const StepContext& context, const SolidModel& model, const solid::StepStart& start,
-              const Eigen::Matrix3Xd& x, solid::Tangent kind, linalg::SparseCholesky::Matrix& A) {
-  double* values = A.valuePtr();
-  std::fill(values, values + A.nonZeros(), 0.0);
-  solid::assemble_tangent(model.body, start, x, kind, [&](int e, int a, int b, const solid::Mat3& block) {
-    const std::array<int, 9>& at = model.block[16 * e + 4 * a + b];
-    for (int i = 0; i < 9; ++i) {
-      if (at[i] >= 0) values[at[i]] += block(i % 3, i / 3);
-    }
-  });
-  const Eigen::VectorXd mass = solid::mass_diagonal(model.body, context.rate);
-  for (int i = 0; i < model.body.nodes(); ++i) {
-    if (model.body.unknown[i] < 0) continue;
-    for (int c = 0; c < 3; ++c) values[model.diagonal[3 * model.body.unknown[i] + c]] += mass[i];
-  }
-}
-
-}  // namespace
-
 FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate, int number,
                        solid::Tangent kind, StageTimes& times) {
   const SolidModel& model = context.model.solids[number];
   Workspace::Solid& memory = workspace.solids[number];
-  const auto factor = [&](solid::Tangent tangent) {
-    {
-      const Clock clock(times.assembly);
-      assemble(context, model, context.solids[number], iterate.solids[number].x, tangent, memory.matrix);
+  {
+    const Clock clock(times.assembly);
+    assemble(model, context.solids[number], iterate.solids[number].x, kind, memory.matrix);
+    for (std::size_t i = 0; i < context.model.loads.size(); ++i) {
+      const SolidLoadModel* load = std::get_if<SolidLoadModel>(&context.model.loads[i].on);
+      if (load && load->solid == number && kind == solid::Tangent::exact)
+        add_pressure_tangent(model, *load, context.command.loads[i], iterate.solids[number].x, memory.matrix);
     }
-    const Clock clock(times.factor);
-    return memory.cholesky.factor(memory.matrix);
-  };
+  }
   FreeMotion free;
-  free.ok = factor(kind);
-  if (!free.ok && kind == solid::Tangent::exact) {
-    free.rotated = true;
-    free.ok = factor(solid::Tangent::rotated);
+  {
+    const Clock clock(times.factor);
+    free.ok = memory.factor.factor(memory.matrix);
   }
   if (!free.ok) return free;
+  free.negative = memory.factor.negative();
+  free.signs = memory.factor.signs();
 
   const Clock clock(times.compliance);
   free.stiffness = memory.matrix.diagonal().maxCoeff();
@@ -96,22 +96,25 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
     if (all[k].solid == number) free.rows.push_back(static_cast<int>(k));
   }
   const auto columns = static_cast<Eigen::Index>(3 * free.rows.size());
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3 * model.body.free_nodes, columns);
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(model.body.unknowns, columns);
   for (std::size_t k = 0; k < free.rows.size(); ++k) {
     const SolidRow& row = all[free.rows[k]];
     if (!is_on(iterate, row)) continue;
-    for (int c = 0; c < 4; ++c) {
-      const int node = model.body.unknown[model.body.tetrahedra[row.where.element][c]];
-      if (node < 0) continue;
-      for (int i = 0; i < 3; ++i) right(3 * node + i, static_cast<Eigen::Index>(3 * k) + i) = row.where.weights[c];
+    const std::span<const int> nodes = model.body.cells[row.where.element].nodes();
+    for (std::size_t c = 0; c < nodes.size(); ++c) {
+      for (int i = 0; i < 3; ++i) {
+        const int unknown = model.body.unknown(i, nodes[c]);
+        if (unknown >= 0)
+          right(unknown, static_cast<Eigen::Index>(3 * k) + i) = row.where.weights[static_cast<Eigen::Index>(c)];
+      }
     }
   }
-  free.X = memory.cholesky.half_solve(right);
+  free.X = memory.factor.half_solve(right);
   return free;
 }
 
 Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b) {
-  return workspace.solids[number].cholesky.half_solve(b);
+  return workspace.solids[number].factor.half_solve(b);
 }
 
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
@@ -121,10 +124,12 @@ Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& w
     y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
          dlambda.segment<3>(context.model.solid_rows[free.rows[k]].row);
   }
-  const Eigen::VectorXd dx = workspace.solids[number].cholesky.back_solve(y);
+  const Eigen::VectorXd dx = workspace.solids[number].factor.back_solve(y);
   Eigen::Matrix3Xd motion = Eigen::Matrix3Xd::Zero(3, body.nodes());
   for (int i = 0; i < body.nodes(); ++i) {
-    if (body.unknown[i] >= 0) motion.col(i) = dx.segment<3>(3 * body.unknown[i]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (body.unknown(axis, i) >= 0) motion(axis, i) = dx[body.unknown(axis, i)];
+    }
   }
   return motion;
 }

@@ -32,28 +32,31 @@ inline rod::Base base_of(const StepContext& context, const State& iterate, int r
 
 /// Unbalanced force of one volume at an iterate, multipliers included.
 struct SolidForces {
-  Eigen::VectorXd r;     ///< 3 x free nodes, [N]: left minus right side of (7)
-  double largest = 0.0;  ///< [N] largest at a node
-  double scale = 0.0;    ///< [N] largest single contribution at a node
+  Eigen::VectorXd r;         ///< over the volume's unknowns [N]: left minus right side of (7)
+  Eigen::VectorXd reaction;  ///< of what is held, as in SolidState
+  double largest = 0.0;      ///< [N] largest at a node
+  double scale = 0.0;        ///< [N] largest single contribution at a node
 };
 SolidForces solid_forces(const StepContext& context, const State& iterate, int number);
 
-/// The volume's linear response, A dx = -r + H^T dlambda, half solved: with X = L^-1 P H^T and y = -L^-1 P r,
-///     H dx = X^T y + X^T X dlambda,   dx = P^T L^-T (y + X dlambda).
+/// The volume's linear response, A dx = -r + H^T dlambda, half solved (linalg/sparse_factor): A^-1 = R^T S R, and with
+/// X = R H^T and y = -R r
+///     H dx = X^T S y + X^T S X dlambda,   dx = R^T S (y + X dlambda).
 struct FreeMotion {
   Eigen::MatrixXd X;       ///< three columns per solid row of this volume, in the order of `rows`
+  Eigen::VectorXd signs;   ///< S
   std::vector<int> rows;   ///< numbers of the solid rows
   double stiffness = 0.0;  ///< [N/m] largest diagonal entry of A
-  bool rotated = false;
+  int negative = 0;        ///< negative eigenvalues of A: 0 where the volume by itself is stable
   bool ok = false;
 };
 FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate, int number,
                        solid::Tangent kind, StageTimes& times);
 
-/// L^-1 P b with the factor of a volume.
+/// R b with the factor of a volume.
 Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b);
 
-/// Correction: 3 x nodes displacement of the volume (zero at clamped nodes) once the multipliers' increments are known.
+/// Correction: 3 x nodes displacement of the volume (zero where it is held) once the multipliers' increments are known.
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
                                   Eigen::VectorXd y, int number, const Eigen::VectorXd& dlambda);
 

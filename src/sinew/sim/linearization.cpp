@@ -20,6 +20,7 @@ Linearization::Linearization(const StepContext& context, Workspace& workspace, c
   }
   const Clock clock(times.rods);
   reduced_ = linearize(context, iterate);
+  W_without_volumes_ = reduced_.problem.W;
   largest_ = std::max(largest_, reduced_.largest);
   scale_ = std::max(scale_, reduced_.scale);
 }
@@ -33,20 +34,44 @@ bool Linearization::finite() const {
                      [](const solve::ChainPart& part) { return part.r.allFinite(); });
 }
 
-bool Linearization::factor(solid::Tangent kind, std::string& failed) {
+bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
+  if (!factor_solids(kind, failed)) return false;
+  couple();
+  if (wanted == Wanted::descent && kind == solid::Tangent::exact && negative_ > 0 &&
+      negative_ + coupled_->negative() > context_.model.rows) {
+    rotated_ = true;
+    if (!factor_solids(solid::Tangent::definite, failed)) return false;
+    couple();
+  }
+  return true;
+}
+
+bool Linearization::factor_solids(solid::Tangent kind, std::string& failed) {
+  free_.clear();
+  negative_ = 0;
   for (std::size_t i = 0; i < context_.model.solids.size(); ++i) {
-    free_.push_back(free_motion(context_, workspace_, iterate_, static_cast<int>(i), kind, times_));
-    if (!free_.back().ok) {
+    const auto number = static_cast<int>(i);
+    FreeMotion own = free_motion(context_, workspace_, iterate_, number, kind, times_);
+    if (!own.ok && kind == solid::Tangent::exact) {
+      rotated_ = true;
+      own = free_motion(context_, workspace_, iterate_, number, solid::Tangent::definite, times_);
+    }
+    if (!own.ok) {
       failed = "solids." + context_.model.solids[i].name;
       return false;
     }
-    rotated_ |= free_.back().rotated;
-    stiffness_ = std::max(stiffness_, free_.back().stiffness);
+    stiffness_ = std::max(stiffness_, own.stiffness);
+    negative_ += own.negative;
+    free_.push_back(std::move(own));
   }
+  return true;
+}
+
+void Linearization::couple() {
   const Clock clock(times_.solve);
+  reduced_.problem.W = W_without_volumes_;
   add_compliance(context_, free_, reduced_.problem);
   coupled_.emplace(reduced_.problem);
-  return true;
 }
 
 void Linearization::stiffen(double part) {
@@ -61,15 +86,20 @@ bool Linearization::unstable() const {
   for (const solve::ChainPart& part : reduced_.problem.chains) {
     if (!part.chain.symmetric()) return false;
   }
-  return coupled_->negative() > context_.model.rows;
+  return negative_ + coupled_->negative() > context_.model.rows;
 }
 
 Increment Linearization::solve(const Linearization& right) {
+  std::vector<Eigen::VectorXd> forces;
+  for (const SolidForces& own : right.forces_) forces.emplace_back(-own.r);
+  return respond(forces, solve::right_side(right.reduced_.problem));
+}
+
+Increment Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide side) {
   const Clock clock(times_.solve);
-  solve::RightSide side = solve::right_side(right.reduced_.problem);
   std::vector<Eigen::VectorXd> y;
   for (std::size_t i = 0; i < free_.size(); ++i) {
-    y.push_back(half_solved(workspace_, static_cast<int>(i), -right.forces_[i].r));
+    y.push_back(half_solved(workspace_, static_cast<int>(i), solids[i]));
     add_free_motion(context_, free_[i], y.back(), side.c);
   }
   Increment increment;

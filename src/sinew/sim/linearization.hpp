@@ -25,23 +25,33 @@ class Linearization {
   double violation() const { return reduced_.violation; }
   bool finite() const;
   const Reduced& reduced() const { return reduced_; }
+  const std::vector<SolidForces>& forces() const { return forces_; }
 
-  /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be.
-  bool factor(solid::Tangent kind, std::string& failed);
+  /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be. A volume by
+  /// itself may be unstable where its couplings hold it (a compressed finger without its cable). Where the whole is,
+  /// too, an iteration that looks for the nearest minimum (`descent`) takes definite tangents instead; one that follows
+  /// a path of equilibria (`any`) does not.
+  enum class Wanted { descent, any };
+  bool factor(solid::Tangent kind, Wanted wanted, std::string& failed);
   /// Factors the coupled problem again with the rods' own stiffness raised by this part of itself: next to a limit
   /// point, where it is singular, the solution is as large as it must be and still has the right direction.
   void stiffen(double part);
-  bool rotated() const { return rotated_; }  ///< the rotated tangent stood in for the exact one
+  bool rotated() const { return rotated_; }  ///< a definite tangent stood in for the exact one
   /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
-  /// the rotated one stood in.
+  /// a definite one stood in.
   bool unstable() const;
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
 
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
   Increment solve() { return solve(*this); }
   Increment solve(const Linearization& right);
+  /// The same for forces [N] on each volume's unknowns and another right side of the rest.
+  Increment respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide side);
 
  private:
+  bool factor_solids(solid::Tangent kind, std::string& failed);
+  void couple();
+
   const StepContext& context_;
   Workspace& workspace_;
   const State& iterate_;
@@ -50,6 +60,8 @@ class Linearization {
   Reduced reduced_;
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
   bool rotated_ = false;
+  int negative_ = 0;  ///< eigenvalues of the volumes' tangents
+  Eigen::MatrixXd W_without_volumes_;
   std::vector<FreeMotion> free_;
   std::optional<solve::CoupledFactor> coupled_;
 };

@@ -1,9 +1,12 @@
 #include "sinew/sim/modal.hpp"
 
+#include <Spectra/SymGEigsShiftSolver.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "sinew/rod/dynamics.hpp"
 #include "sinew/sim/places.hpp"
@@ -40,17 +43,183 @@ Eigen::MatrixXd free_directions(const Eigen::MatrixXd& G) {
   return Q.rightCols(G.cols() - qr.rank());
 }
 
-/// Largest motion of a section's end per unit of the shape [m].
+/// Modes as coordinates of the whole scene: unknowns of all volumes, z, strains of all rods.
+struct Coordinates {
+  explicit Coordinates(const Model& own) : model(own) {
+    for (const SolidModel& solid : model.solids) {
+      solids.push_back(size);
+      size += solid.body.unknowns;
+    }
+    border = size;
+    size += model.unknowns;
+    for (const RodModel& rod : model.rods) {
+      strains.push_back(size);
+      size += rod.rod.strain_coordinates();
+    }
+  }
+  const Model& model;
+  std::vector<Eigen::Index> solids, strains;
+  Eigen::Index border = 0, size = 0;
+};
+
+/// (K with its rows)^-1, as Spectra wants it.
+class Stiffness {
+ public:
+  using Scalar = double;
+  Stiffness(const Coordinates& at, Linearization& factored) : at_(&at), factored_(&factored) {}
+  Eigen::Index rows() const { return at_->size; }
+  Eigen::Index cols() const { return at_->size; }
+  void set_shift(double) {}  // 0
+  void perform_op(const double* in, double* out) const {
+    const Model& model = at_->model;
+    const Eigen::Map<const Eigen::VectorXd> f(in, at_->size);
+    Eigen::Map<Eigen::VectorXd> u(out, at_->size);
+    std::vector<Eigen::VectorXd> solids;
+    for (std::size_t i = 0; i < model.solids.size(); ++i)
+      solids.emplace_back(f.segment(at_->solids[i], model.solids[i].body.unknowns));
+    solve::RightSide side;
+    side.r = -f.segment(at_->border, model.unknowns);
+    side.c = Eigen::VectorXd::Zero(model.rows);
+    for (std::size_t i = 0; i < model.rods.size(); ++i)
+      side.chains.emplace_back(-f.segment(at_->strains[i], model.rods[i].rod.strain_coordinates()));
+    const Increment answer = factored_->respond(solids, std::move(side));
+    if (!answer.reduced.ok) {
+      u.setConstant(NAN);
+      return;
+    }
+    for (std::size_t i = 0; i < model.solids.size(); ++i) {
+      const solid::Body& body = model.solids[i].body;
+      for (int node = 0; node < body.nodes(); ++node) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int unknown = body.unknown(axis, node);
+          if (unknown >= 0) u[at_->solids[i] + unknown] = answer.dx[i](axis, node);
+        }
+      }
+    }
+    u.segment(at_->border, model.unknowns) = answer.reduced.dz;
+    for (std::size_t i = 0; i < model.rods.size(); ++i)
+      u.segment(at_->strains[i], model.rods[i].rod.strain_coordinates()) = answer.reduced.dq[i];
+  }
+
+ private:
+  const Coordinates* at_;
+  Linearization* factored_;
+};
+
+/// M of the whole scene.
+class Mass {
+ public:
+  using Scalar = double;
+  Mass(const Coordinates& at, const State& state) : at_(&at), rods_(mass_matrix(at.model, state)) {}
+  Eigen::Index rows() const { return at_->size; }
+  Eigen::Index cols() const { return at_->size; }
+  void perform_op(const double* in, double* out) const {
+    const Eigen::Map<const Eigen::VectorXd> u(in, at_->size);
+    Eigen::Map<Eigen::VectorXd> f(out, at_->size);
+    for (std::size_t i = 0; i < at_->model.solids.size(); ++i) {
+      const solid::Body& body = at_->model.solids[i].body;
+      Eigen::Matrix3Xd v = Eigen::Matrix3Xd::Zero(3, body.nodes());
+      const auto each = [&](const auto& visit) {
+        for (int node = 0; node < body.nodes(); ++node) {
+          for (int axis = 0; axis < 3; ++axis) {
+            if (body.unknown(axis, node) >= 0) visit(axis, node, at_->solids[i] + body.unknown(axis, node));
+          }
+        }
+      };
+      each([&](int axis, int node, Eigen::Index k) { v(axis, node) = u[k]; });
+      v = (v * body.mass).eval();
+      each([&](int axis, int node, Eigen::Index k) { f[k] = v(axis, node); });
+    }
+    f.tail(rods_.rows()) = rods_ * u.tail(rods_.rows());
+  }
+
+ private:
+  const Coordinates* at_;
+  Eigen::MatrixXd rods_;
+};
+
+Increment shape_of(const Coordinates& at, const Eigen::VectorXd& v) {
+  Increment shape;
+  for (std::size_t i = 0; i < at.model.solids.size(); ++i) {
+    const solid::Body& body = at.model.solids[i].body;
+    Eigen::Matrix3Xd& dx = shape.dx.emplace_back(Eigen::Matrix3Xd::Zero(3, body.nodes()));
+    for (int node = 0; node < body.nodes(); ++node) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (body.unknown(axis, node) >= 0) dx(axis, node) = v[at.solids[i] + body.unknown(axis, node)];
+      }
+    }
+  }
+  shape.reduced.dz = v.segment(at.border, at.model.unknowns);
+  shape.reduced.dlambda = Eigen::VectorXd::Zero(at.model.rows);
+  for (std::size_t i = 0; i < at.model.rods.size(); ++i)
+    shape.reduced.dq.emplace_back(v.segment(at.strains[i], at.model.rods[i].rod.strain_coordinates()));
+  shape.reduced.ok = true;
+  return shape;
+}
+
+double frequency_of(double square) {
+  return std::copysign(std::sqrt(std::abs(square)), square) / (2.0 * std::numbers::pi);
+}
+
+/// Largest motion of a node or a section's end per unit of the shape [m].
 double largest_motion(const Model& model, const StepContext& context, const State& state, const Increment& shape) {
+  double largest = 0.0;
+  for (const Eigen::Matrix3Xd& dx : shape.dx) largest = std::max(largest, dx.colwise().norm().maxCoeff());
   State moved = state;
   const double e = 1e-6 / std::max(1e-12, largest_turn(context, shape.reduced));
   advance_by(context, shape, e, moved);
-  double largest = 0.0;
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const auto a = rod_shape(model, state, static_cast<int>(i)), b = rod_shape(model, moved, static_cast<int>(i));
     for (std::size_t k = 0; k < a.p.size(); ++k) largest = std::max(largest, (b.p[k] - a.p[k]).norm() / e);
   }
   return largest;
+}
+
+/// Few coordinates, and K may be singular (free rods): all modes at once, on a basis of what the rows leave free.
+std::vector<NaturalMode> dense_modes(const Coordinates& at, const Linearization& here, const State& equilibrium,
+                                     int count, std::string& failed) {
+  const Model& model = at.model;
+  const Eigen::MatrixXd K = solve::written_out(here.reduced().problem);
+  // Without the multipliers: what the rows say, and the stiffness of the rest.
+  const Eigen::Index nz = model.unknowns, rows = model.rows, n = K.rows() - nz - rows;
+  Eigen::MatrixXd stiffness(nz + n, nz + n), G(rows, nz + n);
+  stiffness << K.topLeftCorner(nz, nz), K.topRightCorner(nz, n), K.bottomLeftCorner(n, nz), K.bottomRightCorner(n, n);
+  G << K.block(nz, 0, rows, nz), K.block(nz, nz + rows, rows, n);
+  const Eigen::MatrixXd Z = free_directions(G);
+  const Eigen::MatrixXd M = Z.transpose() * mass_matrix(model, equilibrium) * Z;
+  const Eigen::MatrixXd k = Z.transpose() * stiffness * Z;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, M);
+  if (Z.cols() == 0 || solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
+    failed = "the mass matrix is not positive definite: rods need a density";
+    return {};
+  }
+  std::vector<NaturalMode> modes;
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(count, Z.cols()); ++i)
+    modes.push_back({frequency_of(solver.eigenvalues()[i]), shape_of(at, Z * solver.eigenvectors().col(i))});
+  return modes;
+}
+
+/// Lanczos with K^-1 (Spectra): the modes nearest to zero frequency.
+std::vector<NaturalMode> lanczos_modes(const Coordinates& at, Linearization& here, const State& equilibrium, int count,
+                                       std::string& failed) {
+  if (!here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) return {};
+  Stiffness stiffness(at, here);
+  Mass mass(at, equilibrium);
+  const int n = static_cast<int>(at.size), wanted = std::min(count, n - 1);
+  Spectra::SymGEigsShiftSolver<Stiffness, Mass, Spectra::GEigsMode::ShiftInvert> solver(
+      stiffness, mass, wanted, std::min(n, 2 * wanted + 20), 0.0);
+  solver.init();
+  solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10);
+  if (solver.info() != Spectra::CompInfo::Successful || !solver.eigenvalues().allFinite()) {
+    failed = "no modes were found: is a body free to move? hold it, or tie it";
+    return {};
+  }
+  std::vector<NaturalMode> modes;
+  for (int i = 0; i < wanted; ++i)
+    modes.push_back({frequency_of(solver.eigenvalues()[i]), shape_of(at, solver.eigenvectors().col(i))});
+  std::sort(modes.begin(), modes.end(),
+            [](const NaturalMode& a, const NaturalMode& b) { return a.frequency < b.frequency; });
+  return modes;
 }
 
 }  // namespace
@@ -59,42 +228,15 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
                                        std::string& failed) {
   StageTimes times;
   const StepContext context = make_context(model, equilibrium, command_at(model, 0.0), 0.0);
-  const Linearization here(context, workspace, equilibrium, times);
-  const solve::CoupledProblem& problem = here.reduced().problem;
-  const Eigen::MatrixXd K = solve::written_out(problem);
-  if (!(K - K.transpose()).isZero(1e-9 * K.cwiseAbs().maxCoeff())) {
+  Linearization here(context, workspace, equilibrium, times);
+  for (const solve::ChainPart& part : here.reduced().problem.chains) {
+    if (part.chain.symmetric()) continue;
     failed = "follower forces and moments have no potential: modes about them need not vibrate; leave those loads out";
     return {};
   }
-  // Without the multipliers: what the rows say, and the stiffness of the rest.
-  const Eigen::Index nz = model.unknowns, rows = model.rows, n = K.rows() - nz - rows;
-  Eigen::MatrixXd stiffness(nz + n, nz + n), G(rows, nz + n);
-  stiffness << K.topLeftCorner(nz, nz), K.topRightCorner(nz, n), K.bottomLeftCorner(n, nz), K.bottomRightCorner(n, n);
-  G << K.block(nz, 0, rows, nz), K.block(nz, nz + rows, rows, n);
-  const Eigen::MatrixXd Z = free_directions(G);
-  const Eigen::MatrixXd M = Z.transpose() * mass_matrix(model, equilibrium) * Z;
-  Eigen::MatrixXd k = Z.transpose() * stiffness * Z;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, M);
-  if (Z.cols() == 0 || solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
-    failed = "the mass matrix is not positive definite: rods need a density";
-    return {};
-  }
-  std::vector<NaturalMode> modes;
-  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(count, Z.cols()); ++i) {
-    NaturalMode& mode = modes.emplace_back();
-    const double square = solver.eigenvalues()[i];
-    mode.frequency = std::copysign(std::sqrt(std::abs(square)), square) / (2.0 * std::numbers::pi);
-    const Eigen::VectorXd v = Z * solver.eigenvectors().col(i);
-    mode.shape.reduced.dz = v.head(nz);
-    mode.shape.reduced.dlambda = Eigen::VectorXd::Zero(rows);
-    Eigen::Index at = nz;
-    for (const RodModel& rod : model.rods) {
-      mode.shape.reduced.dq.emplace_back(v.segment(at, rod.rod.strain_coordinates()));
-      at += rod.rod.strain_coordinates();
-    }
-    mode.shape.reduced.ok = true;
-  }
-  return modes;
+  const Coordinates at(model);
+  return model.solids.empty() ? dense_modes(at, here, equilibrium, count, failed)
+                              : lanczos_modes(at, here, equilibrium, count, failed);
 }
 
 StepResult modal_step(const Model& model, Workspace& workspace, const State& state) {

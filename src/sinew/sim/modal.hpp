@@ -1,4 +1,4 @@
-// Natural frequencies and modes of rods about an equilibrium, with everything that ties them.
+// Natural frequencies and modes of a scene about an equilibrium.
 #pragma once
 
 #include "sinew/sim/linearization.hpp"
@@ -10,7 +10,8 @@ struct NaturalMode {
   Increment shape;         ///< of unit modal mass
 };
 
-/// Solves K v = omega^2 M v for all coordinates v that the rows leave free, lowest first; at most `count` modes. K is
+/// Solves K v = omega^2 M v for all coordinates v that the rows leave free, lowest first; at most `count` modes, with
+/// solids those nearest to zero. K is
 /// the exact tangent at the state, gravity, loads, tendons and multipliers included; M the mass matrix (rod/dynamics).
 /// The scene's analysis must be modal. Empty, with the reason in `failed`, where rods have no mass, or loads no
 /// potential.

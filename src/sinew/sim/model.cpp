@@ -39,7 +39,7 @@ void number_cable_points(Model& model, int number) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     points[k]->cable_point = static_cast<int>(k);
     const solid::Body& body = model.solids[points[k]->solid].body;
-    z.segment<3>(static_cast<Eigen::Index>(1 + 3 * k)) = solid::position(points[k]->where, body.tetrahedra, body.rest);
+    z.segment<3>(static_cast<Eigen::Index>(1 + 3 * k)) = solid::position(points[k]->where, body.cells, body.rest);
   }
   cable.cable.length = rod::cable_length(cable.cable, cable.base, z).value;
 }
@@ -115,6 +115,40 @@ void number_unknowns(Model& model) {
   number_ties(model);
 }
 
+/// Constant strain cannot bend without changing volume.
+void warn_of_locking(Model& model, const SolidModel& solid) {
+  double poisson = 0.0;
+  for (int cell = 0; cell < solid.body.elements(); ++cell) {
+    if (solid.body.cells[cell].kind != solid::Kind::tet4) continue;
+    const solid::Lame moduli = solid::lame(solid.body.of(cell).law);
+    poisson = std::max(poisson, 0.5 * moduli.lambda / (moduli.lambda + moduli.mu));
+  }
+  if (poisson > 0.48) {
+    model.warnings.push_back("solids." + solid.name + ": 4-node tetrahedra lock at Poisson's ratio " + text(poisson) +
+                             " and bend too little; save the mesh with second-order elements (10-node tetrahedra)");
+  }
+}
+
+/// Statics needs bodies that something holds; in motion they may fly.
+void check_held(Model& model, std::size_t number) {
+  const SolidModel& solid = model.solids[number];
+  const bool held = solid.held() >= 6 || solid.springs.size() > 0;
+  const bool coupled = std::any_of(model.points.begin(), model.points.end(),
+                                   [&](const PointModel& p) { return p.solid == static_cast<int>(number); }) ||
+                       std::any_of(model.ties.begin(), model.ties.end(),
+                                   [&](const TieModel& tie) { return tie.solid == static_cast<int>(number); });
+  if (held) return;
+  if (coupled || model.scene.analysis == Analysis::dynamic) {
+    model.warnings.push_back("solids." + solid.name +
+                             ": fewer than three nodes are fixed and no springs hold it; it falls or turns freely, but "
+                             "for its couplings");
+    return;
+  }
+  reject("solids." + solid.name + ".fixed", std::to_string(solid.held()) + " coordinates",
+         "at least three nodes must be fixed, or the body falls or turns freely",
+         "add `fixed: {box: [[..], [..]]}` around the part that is held, or `springs`");
+}
+
 /// Concentrated loads of each rod: where its internal forces may jump.
 void count_jumps(Model& model) {
   const auto at = [&model](int rod, int count) {
@@ -125,7 +159,10 @@ void count_jumps(Model& model) {
     at(tie.rod, 1);
     at(tie.other, 1);
   }
-  for (const LoadModel& load : model.loads) at(load.rod, load.concentrated() ? 1 : 0);
+  for (const LoadModel& load : model.loads) {
+    const RodLoadModel* own = std::get_if<RodLoadModel>(&load.on);
+    if (own && own->concentrated()) at(own->rod, 1);
+  }
   for (const ActuatorModel& actuator : model.actuators) at(actuator.line.rod, actuator.tendon ? 2 : 0);
 }
 
@@ -172,13 +209,10 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   if (scene.analysis == Analysis::statics && !(scene.time.duration > 0.0))
     reject("time.duration", text(scene.time.duration) + " s", "must be greater than 0 for `analysis: static`",
            "loads and motors are taken from the tables at the end of the duration");
-  if (scene.analysis == Analysis::statics && !scene.solids.empty())
-    reject("analysis", "static", "follows the path of rods only, and this scene has solids",
-           "use `analysis: quasi_static`: an equilibrium at every time of the grid");
-  if (scene.analysis == Analysis::modal && !scene.solids.empty())
-    reject("analysis", "modal", "finds the modes of rods only, and this scene has solids",
-           "remove the solids, or use `analysis: dynamic`");
-  for (const auto& [name, solid] : scene.solids) model.solids.push_back(build_solid(scene, name, solid, read_mesh));
+  for (const auto& [name, solid] : scene.solids) {
+    model.solids.push_back(build_solid(scene, name, solid, read_mesh));
+    warn_of_locking(model, model.solids.back());
+  }
   for (const auto& [name, rod] : scene.rods) {
     if (rod.cable == Cable::geometric) {
       model.cables.push_back(build_cable(scene, name, rod));
@@ -199,6 +233,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
+  for (std::size_t i = 0; i < model.solids.size(); ++i) check_held(model, i);
   count_jumps(model);
   measure(model);
   const State start = initial_state(model);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "sinew/linalg/sparse_cholesky.hpp"
+#include "sinew/linalg/sparse_factor.hpp"
 #include "sinew/rod/geometric_cable.hpp"
 #include "sinew/rod/rod.hpp"
 #include "sinew/rod/tendon.hpp"
@@ -17,16 +19,30 @@
 
 namespace sinew {
 
+/// Where regions of a solid are looked up.
+struct PlacedMesh {
+  Eigen::Matrix3Xd object;                     ///< [m] its nodes before the pose; in the world: Body::rest
+  std::vector<int> number;                     ///< of the nodes of the file: ours, or -1 where no cell uses it
+  std::vector<solid::CellFace> boundary;       ///< outward
+  std::map<std::string, solid::Group> groups;  ///< in our numbers
+  double diagonal = 0.0;                       ///< [m]
+};
+
 /// A volume, where it is attached, and the pattern of its matrix.
 struct SolidModel {
   std::string name;
   solid::Body body;
+  PlacedMesh mesh;
   std::vector<solid::Triangle> surface;
-  int frame = -1;                         ///< number of its frame, -1: the ground
-  linalg::SparseCholesky::Matrix matrix;  ///< lower triangle over free unknowns, values zero
-  std::vector<int> diagonal;              ///< position of each diagonal entry in the values
-  std::vector<std::array<int, 9>>
-      block;  ///< per element and corner pair 4 a + b: positions of the 3 x 3 block, -1: absent
+  int frame = -1;                        ///< number of its frame, -1: the ground
+  std::vector<int> carrier;              ///< per node with held coordinates: number of the frame that holds it
+  Eigen::Matrix3Xd springs;              ///< [N/m] per node and axis
+  linalg::SparseFactor::Matrix matrix;   ///< lower triangle over its unknowns, values zero
+  std::vector<int> places;               ///< in the values: of every element's entries, see sim/solid_matrix
+  std::vector<std::size_t> first_place;  ///< per element
+  std::vector<int> mass_places;          ///< of every entry of the mass matrix's lower triangle, times three axes
+  std::vector<int> diagonal;             ///< of the diagonal
+  int held() const { return 3 * body.nodes() - body.unknowns; }
 };
 
 /// A Cosserat rod. Its strains are eliminated in every step; the coordinates of its base are unknowns z.
@@ -112,19 +128,32 @@ struct ActuatorModel {
   int row = -1;                       ///< if driven by displacement or angle
 };
 
-/// Forces on material points of a rod, all times one factor.
-struct LoadModel {
+/// Forces on material points of a rod.
+struct RodLoadModel {
   struct At {
     double s = 0.0;       ///< [m]
     double weight = 1.0;  ///< [m] of a distributed load
   };
-  std::string name;
   int rod = 0;
   std::vector<At> at;
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< [N], [N m], or per metre
   bool follower = false;
-  Drive factor;
   bool concentrated() const { return at.size() == 1; }
+};
+
+/// Forces on the nodes of a solid, dead or by pressure on faces of its boundary.
+struct SolidLoadModel {
+  int solid = 0;
+  Eigen::Matrix3Xd force;              ///< [N] per node; empty: none
+  double pressure = 0.0;               ///< [Pa]
+  std::vector<solid::CellFace> faces;  ///< under it
+  std::vector<int> places;             ///< of the faces' tangents in the solid's matrix, face by face
+};
+
+struct LoadModel {
+  std::string name;
+  Drive factor;  ///< of all its forces
+  std::variant<RodLoadModel, SolidLoadModel> on;
 };
 
 struct OutputModel {
@@ -132,6 +161,7 @@ struct OutputModel {
   int solid = -1, rod = -1;
   solid::EmbeddedPoint where;  ///< on the solid
   double abscissa = 0.0;       ///< on the rod
+  std::vector<bool> nodes;     ///< of the solid, that a reaction is summed over
   Quantity quantity = Quantity::position;
 };
 

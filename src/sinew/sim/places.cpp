@@ -23,7 +23,7 @@ rod::Configuration rod_shape(const Model& model, const State& state, int rod) {
 }
 
 Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where) {
-  return solid::position(where, model.solids[solid].body.tetrahedra, state.solids[solid].x);
+  return solid::position(where, model.solids[solid].body.cells, state.solids[solid].x);
 }
 
 double motor_position(const Model& model, const State& state, const ActuatorModel& actuator) {

@@ -60,11 +60,12 @@ void RodRows::add_masses() {
 
 void RodRows::add_forces() {
   for (std::size_t i = 0; i < context_.model.loads.size(); ++i) {
-    const LoadModel& own = context_.model.loads[i];
-    if (own.rod != number_) continue;
+    const RodLoadModel* const on_rod = std::get_if<RodLoadModel>(&context_.model.loads[i].on);
+    if (!on_rod || on_rod->rod != number_) continue;
+    const RodLoadModel& own = *on_rod;
     const double factor = context_.command.loads[i];
     double acting = 0.0;
-    for (const LoadModel::At& at : own.at) {
+    for (const RodLoadModel::At& at : own.at) {
       const rod::Mat3 R = own.follower ? rod::branch(shape_, at.s).R : rod::Mat3(rod::Mat3::Identity());
       rod::PointLoad point{at.s, Vec3::Zero(), R * (-factor * at.weight * own.force)};
       point.moment = R * (-factor * at.weight * own.moment);

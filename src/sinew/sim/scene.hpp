@@ -11,6 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/solid/body.hpp"
+#include "sinew/solid/laws.hpp"
+
 namespace sinew {
 
 using Vec3 = Eigen::Vector3d;
@@ -59,12 +62,58 @@ struct Box {
   In in = In::object;
 };
 
-enum class Law { corotational };
+struct Sphere {
+  Vec3 center = Vec3::Zero();  ///< [m]
+  double radius = 0.0;         ///< [m] > 0
+  In in = In::object;
+};
+
+struct Plane {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< [m], any length
+  std::optional<double> within = {};                  ///< [m] to either side of it; 1e-6 of the body's diagonal
+  In in = In::object;
+};
+
+/// Nodes by their number in the mesh file, from 0.
+struct NodeNumbers {
+  std::vector<int> numbers;
+};
+
+/// What a mesh file has given this name, or number.
+struct GroupName {
+  std::string name;
+};
+
+/// The whole boundary of a solid.
+struct WholeSurface {};
+
+/// Nodes of a solid: those inside, or of that name. A cell or a face belongs to a region with all its nodes, of a group
+/// if the group has it.
+using Region = std::variant<Box, Sphere, Plane, NodeNumbers, GroupName, WholeSurface>;
+
+/// Nodes held by the solid's own frame (or the ground) or another one, which moves them.
+struct Held {
+  Region region;
+  std::array<bool, 3> axes = {true, true, true};  ///< of the world
+  std::optional<std::string> frame = {};          ///< none: the solid's own
+};
+
+/// Springs from the nodes of a region to where they are at rest, in the frame of the solid.
+struct Spring {
+  Region region;
+  Vec3 stiffness = Vec3::Zero();  ///< [N/m] along the world's axes, all nodes together, >= 0
+};
 
 struct SolidMaterial {
-  Law law = Law::corotational;
-  double young = 0.0;    ///< [Pa] > 0
-  double poisson = 0.0;  ///< in (-1, 0.5)
+  solid::Law law = solid::Corotational();
+  double viscosity = 0.0;         ///< [Pa s] >= 0, of shear; three times as much in extension
+  std::optional<double> density;  ///< [kg/m^3] > 0; none: the solid's
+};
+
+/// Cells of another material than the rest.
+struct SolidPart {
+  Region region;
+  SolidMaterial material;
 };
 
 /// Damping force = (mass M + stiffness K) v.
@@ -79,10 +128,13 @@ struct Solid {
   Pose pose;                         ///< after scale
   std::optional<std::string> frame;  ///< attached to this frame
   SolidMaterial material;
+  std::vector<SolidPart> parts;   ///< the last one that has a cell decides
   std::optional<double> mass;     ///< [kg] total, exactly one of mass and density
   std::optional<double> density;  ///< [kg/m^3]
+  solid::MassMatrix mass_matrix = solid::MassMatrix::lumped;
   Rayleigh rayleigh;
-  std::vector<Box> fixed;  ///< nodes inside any of these are clamped to the frame (or the ground)
+  std::vector<Held> fixed;  ///< none needed where springs or couplings hold it
+  std::vector<Spring> springs;
 };
 
 /// The six strains, in this order everywhere (NOTATION.md).
@@ -231,8 +283,17 @@ struct Actuator {
   Drive drive;  ///< [N], [m], [N m] or [rad]
 };
 
+/// Dead forces and pressure on a region of a solid.
+struct SolidLoad {
+  std::string solid;
+  Region region;
+  Vec3 force = Vec3::Zero();  ///< [N] in all, spread evenly over the region's part of the surface, or its nodes
+  double pressure = 0.0;      ///< [Pa] against the region's part of the surface as it moves; negative: suction
+  Drive factor = Table{{0.0}, {1.0}};
+};
+
 /// A dead or follower load on a rod.
-struct Load {
+struct RodLoad {
   std::string rod;
   std::optional<double> at;            ///< [m] abscissa of a point load; none: the tip
   std::optional<double> from, to;      ///< [m] both: a distributed load between these abscissae
@@ -242,15 +303,19 @@ struct Load {
   Drive factor = Table{{0.0}, {1.0}};  ///< both are multiplied by it [-]
 };
 
-/// What is recorded of a material point, of a solid (`point`) or a rod (`at`).
-enum class Quantity { position, strain, force, moment, stress };
+using Load = std::variant<RodLoad, SolidLoad>;
+
+/// What is recorded of a material point, of a solid (`point`) or a rod (`at`); `reaction`: the force with which a
+/// solid's held nodes in `region` are held.
+enum class Quantity { position, displacement, strain, force, moment, stress, reaction };
 struct Output {
   std::optional<std::string> solid;
   std::optional<std::string> rod;
   Point point;                             ///< on a solid
   std::optional<double> at;                ///< [m] abscissa on a rod
   std::optional<double> reach;             ///< as for Slide
-  Quantity quantity = Quantity::position;  ///< other than position: of a rod
+  std::optional<Region> region;            ///< of a reaction; none: all
+  Quantity quantity = Quantity::position;  ///< displacement and reaction: of a solid; force and moment: of a rod
 };
 
 /// What is computed. `dynamic`: the motion; `quasi_static`: equilibrium at every time of the grid, without inertia and

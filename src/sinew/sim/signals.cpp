@@ -22,7 +22,61 @@ std::vector<double> numbers(const Vector& v) {
   return {v.data(), v.data() + v.size()};
 }
 
+/// A symmetric tensor as xx yy zz yz xz xy.
+std::vector<double> six(const solid::Mat3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(1, 2), t(0, 2), t(0, 1)}; }
+
+/// Sum over the chosen nodes' held coordinates.
+Vec3 reaction(const Model& model, const State& state, const OutputModel& output) {
+  const solid::Body& body = model.solids[output.solid].body;
+  Vec3 sum = Vec3::Zero();
+  Eigen::Index held = 0;
+  for (int node = 0; node < body.nodes(); ++node) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (body.unknown(axis, node) >= 0) continue;
+      if (output.nodes[node]) sum[axis] += state.solids[output.solid].reaction[held];
+      ++held;
+    }
+  }
+  return sum;
+}
+
+SignalGroup solid_group(const OutputModel& output) {
+  static constexpr std::initializer_list<const char*> kSix = {"xx", "yy", "zz", "yz", "xz", "xy"};
+  static constexpr std::initializer_list<const char*> kStress = {
+      "xx", "yy", "zz", "yz", "xz", "xy", "von_mises", "principal_1", "principal_2", "principal_3"};
+  const int solid = output.solid;
+  switch (output.quantity) {
+    case Quantity::displacement:
+      return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
+                const solid::Body& body = model.solids[solid].body;
+                return numbers(
+                    Vec3(output_position(model, state, output) - solid::position(output.where, body.cells, body.rest)));
+              }};
+    case Quantity::strain:
+      return {named(output.name, kSix), [=](const Model& model, const State& state) {
+                return six(solid::green_strain(model.solids[solid].body, output.where, state.solids[solid].x));
+              }};
+    case Quantity::stress:
+      return {named(output.name, kStress), [=](const Model& model, const State& state) {
+                const solid::Mat3 stress =
+                    solid::cauchy_stress(model.solids[solid].body, output.where, state.solids[solid].x);
+                std::vector<double> values = six(stress);
+                values.push_back(solid::von_mises(stress));
+                const Vec3 principal = solid::principal_values(stress);
+                values.insert(values.end(), principal.begin(), principal.end());
+                return values;
+              }};
+    case Quantity::reaction:
+      return {named(output.name, {"x", "y", "z"}),
+              [=](const Model& model, const State& state) { return numbers(reaction(model, state, output)); }};
+    default:
+      return {named(output.name, {"x", "y", "z"}),
+              [=](const Model& model, const State& state) { return numbers(output_position(model, state, output)); }};
+  }
+}
+
 SignalGroup output_group(const OutputModel& output) {
+  if (output.solid >= 0) return solid_group(output);
   const int rod = output.rod;
   const double s = output.abscissa;
   switch (output.quantity) {
@@ -45,7 +99,7 @@ SignalGroup output_group(const OutputModel& output) {
                 const rod::SectionStress stress = section_stress(model, state, rod, s);
                 return std::vector<double>{stress.axial, stress.bending, stress.torsion, stress.von_mises};
               }};
-    case Quantity::position:
+    default:
       break;
   }
   return {named(output.name, {"x", "y", "z"}),
@@ -146,7 +200,7 @@ EnergyBalance energy_balance(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const solid::Body& body = model.solids[i].body;
     const SolidState& own = state.solids[i];
-    balance.kinetic += 0.5 * own.v.colwise().squaredNorm().dot(body.masses);
+    balance.kinetic += 0.5 * own.v.cwiseProduct(own.v * body.mass).sum();
     balance.elastic += solid::elastic_energy(body, own.x);
     balance.weight -= g.dot((own.x - body.rest) * body.masses);
   }

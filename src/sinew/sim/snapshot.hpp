@@ -13,9 +13,9 @@ struct SolidSnapshot {
   std::string name;
   Eigen::Matrix3Xd rest;   ///< [m] node positions at t = 0
   Eigen::Matrix3Xd nodes;  ///< [m] node positions now
-  std::vector<solid::Tetrahedron> tetrahedra;
+  std::vector<solid::Cell> cells;
   std::vector<solid::Triangle> surface;
-  Eigen::VectorXd von_mises;  ///< [Pa] per tetrahedron
+  Eigen::VectorXd von_mises;  ///< [Pa] per cell
 };
 
 /// Values at the points of a rod, by name: what ParaView shows.

@@ -22,7 +22,8 @@ Eigen::Index path_size(const Model& model) {
 State initial_state(const Model& model) {
   State state;
   for (const SolidModel& solid : model.solids) {
-    state.solids.push_back({solid.body.rest, Eigen::Matrix3Xd::Zero(3, solid.body.nodes())});
+    state.solids.push_back(
+        {solid.body.rest, Eigen::Matrix3Xd::Zero(3, solid.body.nodes()), Eigen::VectorXd::Zero(solid.held())});
   }
   for (const RodModel& rod : model.rods) {
     RodState& own = state.rods.emplace_back();
@@ -41,7 +42,7 @@ State initial_state(const Model& model) {
     if (point.cable_point >= 0) {
       const SolidModel& solid = model.solids[point.solid];
       state.cables[point.line.cable].z.segment<3>(1 + 3 * point.cable_point) =
-          solid::position(point.where, solid.body.tetrahedra, solid.body.rest);
+          solid::position(point.where, solid.body.cells, solid.body.rest);
     }
   }
   state.followed.setZero(model.followed);
@@ -70,6 +71,7 @@ void each_number(StateType& state, const Visit& visit) {
   for (auto& solid : state.solids) {
     array(solid.x);
     array(solid.v);
+    array(solid.reaction);
   }
   for (auto& rod : state.rods) {
     array(rod.q);

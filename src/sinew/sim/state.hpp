@@ -9,7 +9,8 @@
 namespace sinew {
 
 struct SolidState {
-  Eigen::Matrix3Xd x, v;  ///< [m], [m/s], 3 x nodes
+  Eigen::Matrix3Xd x, v;     ///< [m], [m/s], 3 x nodes
+  Eigen::VectorXd reaction;  ///< [N] with which each held coordinate is held, nodes in their order, x y z
 };
 
 struct RodState {

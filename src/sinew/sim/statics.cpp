@@ -71,7 +71,9 @@ struct Corrector {
   Increment rate_of_change(Linearization& here, const State& iterate, double t, StageTimes& times) const {
     const double e = 1e-6;
     const StepContext ahead = context_at(model, start, t + e);
-    const Linearization there(ahead, workspace, iterate, times);
+    State carried = iterate;
+    place_held(ahead, carried);
+    const Linearization there(ahead, workspace, carried, times);
     Increment both = here.solve(there);
     const Increment own = here.solve();
     if (!own.reduced.ok) both.reduced.ok = false;
@@ -94,13 +96,14 @@ struct Corrector {
     double stiffness = 0.0;
     for (;; ++report.newton) {
       const StepContext context = context_at(model, start, t);
+      place_held(context, iterate);
       Linearization here(context, workspace, iterate, report.times);
       report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
       report.violation = here.violation();
       report.status = Status::diverged;
       if (!here.finite() || !std::isfinite(t)) return report;
       if (report.newton > 0 && balanced(model, here, stiffness)) {
-        finish(context, here.reduced(), iterate);
+        finish(context, here, iterate);
         report.status = !finite(iterate)                ? Status::diverged
                         : turned_over(context, iterate) ? Status::max_iterations
                                                         : Status::converged;
@@ -115,7 +118,7 @@ struct Corrector {
       const int most = direction.size() > 0 && !report.rotated ? kMostIterations : model.scene.newton.limit;
       if (report.newton == most) return report;
       report.status = Status::singular;
-      if (!here.factor(solid::Tangent::exact, report.detail)) return report;
+      if (!here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail)) return report;
       report.rotated |= here.rotated();
       report.unstable = here.unstable();
       stiffness = std::max(stiffness, here.stiffness());
@@ -185,7 +188,8 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
   Linearization here(context, workspace, state, report.times);
   const Corrector tangent{model, workspace, state, {}, 0.0};
   report.status = Status::singular;
-  if (!here.finite() || !here.factor(solid::Tangent::exact, report.detail)) return {state, report};
+  if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail))
+    return {state, report};
   Increment change = tangent.rate_of_change(here, state, t0, report.times);
   if (!change.reduced.ok) {
     here.stiffen(kStiffer);

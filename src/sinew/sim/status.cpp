@@ -16,6 +16,8 @@ std::string_view to_string(Status status) {
       return "singular";
     case Status::diverged:
       return "diverged";
+    case Status::inverted:
+      return "inverted";
     case Status::path_lost:
       return "path_lost";
     case Status::rod_exhausted:
@@ -42,6 +44,10 @@ std::string_view explain(Status status) {
              "picture; try a smaller step.";
     case Status::diverged:
       return "Numbers grew without bound. Try a smaller time step or a slower motion.";
+    case Status::inverted:
+      return "An element turned inside out, beyond where its law is defined. Take shorter steps, a finer mesh there, "
+             "or a "
+             "law that goes on (neo_hookean, corotational).";
     case Status::path_lost:
       return "The path of equilibria turned back for good: there is no equilibrium under the full load, or only one "
              "that a "

@@ -12,6 +12,7 @@ enum class Status {
   max_iterations,  ///< Newton did not meet its tolerance within the limit
   singular,        ///< a matrix could not be factored
   diverged,        ///< numbers grew beyond what can be represented
+  inverted,        ///< an element turned inside out, where its law ends
   path_lost,       ///< statics: the path of equilibria does not lead to the full load
   rod_exhausted,   ///< the base end of a rod was drawn past a sliding point
 };

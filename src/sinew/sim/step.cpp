@@ -26,15 +26,16 @@ Workspace make_workspace(const Model& model) {
   workspace.solids = std::vector<Workspace::Solid>(model.solids.size());
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     workspace.solids[i].matrix = model.solids[i].matrix;
-    workspace.solids[i].cholesky.analyze(model.solids[i].matrix);
+    workspace.solids[i].factor.analyze(model.solids[i].matrix);
   }
   return workspace;
 }
 
 namespace {
 
-/// Halves the last increment of a static equilibrium while the unbalanced force grows. Motion of rows is not judged: a
-/// motor that has moved must load the rods before anything can be balanced.
+/// Halves the last increment while it leads where a law ends (an element turned inside out), and that of a static
+/// equilibrium while the unbalanced force grows. Motion of rows is not judged: a motor that has moved must load the
+/// rods before anything can be balanced.
 class LineSearch {
  public:
   void take(const State& from, const Increment& increment, double fraction, const Linearization& there) {
@@ -46,7 +47,8 @@ class LineSearch {
     halvings_ = 0;
   }
   bool too_far(const StepContext& context, const Linearization& here) const {
-    constexpr int kMostHalvings = 4;
+    constexpr int kMostHalvings = 4, kMostRescues = 12;
+    if (from_ && !here.finite()) return halvings_ < kMostRescues;
     return context.rate == 0.0 && from_ && judged_ <= 1e-6 * context.model.size && halvings_ < kMostHalvings &&
            !(here.largest() <= force_) && here.largest() > 1e-6 * here.scale();
   }
@@ -93,15 +95,18 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     Linearization& here = *evaluated;
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
     report.violation = here.violation();
-    if (!here.finite()) return fail(Status::diverged, "forces are not finite");
+    if (!here.finite()) {
+      const std::string where = inside_out(model, iterate);
+      return where.empty() ? fail(Status::diverged, "forces are not finite") : fail(Status::inverted, where);
+    }
     const bool met = balanced(model, here, stiffness);
     if (fixed ? report.newton == newton.iterations : (met && report.newton > 0)) {
-      finish(context, here.reduced(), iterate);
+      finish(context, here, iterate);
       break;
     }
     if (!fixed && report.newton == newton.limit) return fail(Status::max_iterations, "");
     std::string failed;
-    if (!here.factor(fixed ? solid::Tangent::rotated : solid::Tangent::exact, failed))
+    if (!here.factor(fixed ? solid::Tangent::definite : solid::Tangent::exact, Linearization::Wanted::descent, failed))
       return fail(Status::singular, failed);
     report.rotated |= here.rotated();
     if (context.rate == 0.0) report.unstable = here.unstable();
@@ -110,7 +115,7 @@ StepResult step(const Model& model, Workspace& workspace, const Command& command
     report.redundant |= increment.reduced.redundant;
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
     const double fraction = fixed ? 1.0 : trusted_fraction(context, increment);
-    if (context.rate == 0.0 && !fixed) search.take(iterate, increment, fraction, here);
+    if (!fixed) search.take(iterate, increment, fraction, here);
     advance_by(context, increment, fraction, iterate);
   }
 

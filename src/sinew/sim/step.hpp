@@ -38,8 +38,8 @@ struct StepReport {
 /// Memory that steps reuse; holds no information between them. One per thread.
 struct Workspace {
   struct Solid {
-    linalg::SparseCholesky cholesky;
-    linalg::SparseCholesky::Matrix matrix;
+    linalg::SparseFactor factor;
+    linalg::SparseFactor::Matrix matrix;
   };
   std::vector<Solid> solids;
 };

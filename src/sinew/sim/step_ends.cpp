@@ -3,13 +3,28 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
+#include "sinew/sim/solid_loads.hpp"
 
 namespace sinew {
+
+void place_held(const StepContext& context, State& iterate) {
+  for (std::size_t i = 0; i < iterate.solids.size(); ++i) {
+    const SolidModel& model = context.model.solids[i];
+    for (int node = 0; node < model.body.nodes(); ++node) {
+      if (model.body.unknown.col(node).minCoeff() >= 0) continue;
+      const Vec3 held = apply(context.moved(model.carrier[node]), model.body.rest.col(node));
+      for (int axis = 0; axis < 3; ++axis) {
+        if (model.body.unknown(axis, node) < 0) iterate.solids[i].x(axis, node) = held[axis];
+      }
+    }
+  }
+}
 
 State first_guess(const StepContext& context) {
   State guess = context.start;
@@ -20,11 +35,8 @@ State first_guess(const StepContext& context) {
     const Placement carry = compose(context.moved(frame), inverse(before));
     Eigen::Matrix3Xd& x = guess.solids[i].x;
     x = ((carry.R * x).colwise() + carry.p).eval();
-    const solid::Body& body = context.model.solids[i].body;
-    for (int node = 0; node < body.nodes(); ++node) {  // clamped nodes exactly where the frame puts them
-      if (body.unknown[node] < 0) x.col(node) = apply(context.moved(frame), body.rest.col(node));
-    }
   }
+  place_held(context, guess);
   return guess;
 }
 
@@ -63,6 +75,30 @@ void rebase(const rod::Rod& rod, RodState& state) {
   }
 }
 
+/// Work of a load whose factor goes from one value to another.
+double work_of(const RodLoadModel& load, const StepContext& context, const State& next, double before, double after) {
+  const Model& model = context.model;
+  const rod::Rod& rod = model.rods[load.rod].rod;
+  const Placement base = rod_base(model, context.start, load.rod);
+  const auto start = rod::configure(rod, {base, context.start.rods[load.rod].turned}, context.start.rods[load.rod].q);
+  const auto end = rod::configure(rod, base_of(context, next, load.rod), next.rods[load.rod].q);
+  double sum = 0.0;
+  for (const RodLoadModel::At& at : load.at) {
+    const rod::Branch a = rod::branch(start, at.s), b = rod::branch(end, at.s);
+    const Vec3 turn = lie::log(b.R * a.R.transpose());
+    const Vec3 along = load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
+    const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
+    sum += at.weight * (load.force.dot(along) + load.moment.dot(about));
+  }
+  return 0.5 * (before + after) * sum;
+}
+
+double work_of(const SolidLoadModel& load, const StepContext& context, const State& next, double before, double after) {
+  const Eigen::Matrix3Xd &from = context.start.solids[load.solid].x, &to = next.solids[load.solid].x;
+  const Eigen::Matrix3Xd force = before * load_forces(load, from) + after * load_forces(load, to);
+  return 0.5 * force.cwiseProduct(to - from).sum();
+}
+
 /// Work of motors and loads over the step, by the mean of their forces at its ends.
 double work(const StepContext& context, const State& next) {
   const Model& model = context.model;
@@ -79,31 +115,24 @@ double work(const StepContext& context, const State& next) {
     sum += 0.5 * (force + next.actuators[i]) * (after[i] - before[i]);
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
-    const LoadModel& load = model.loads[i];
-    const rod::Rod& rod = model.rods[load.rod].rod;
-    const Placement base = rod_base(model, context.start, load.rod);
-    const auto start = rod::configure(rod, {base, context.start.rods[load.rod].turned}, context.start.rods[load.rod].q);
-    const auto end = rod::configure(rod, base_of(context, next, load.rod), next.rods[load.rod].q);
-    for (const LoadModel::At& at : load.at) {
-      const rod::Branch a = rod::branch(start, at.s), b = rod::branch(end, at.s);
-      const Vec3 turn = lie::log(b.R * a.R.transpose());
-      const Vec3 along =
-          load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
-      const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
-      sum += 0.5 * ((first ? at_start.loads[i] : context.start.loads[i]) + context.command.loads[i]) * at.weight *
-             (load.force.dot(along) + load.moment.dot(about));
-    }
+    const double before_it = first ? at_start.loads[i] : context.start.loads[i], after_it = context.command.loads[i];
+    sum += std::visit([&](const auto& load) { return work_of(load, context, next, before_it, after_it); },
+                      model.loads[i].on);
   }
   return sum;
 }
 
 }  // namespace
 
-void finish(const StepContext& context, const Reduced& reduced, State& next) {
+void finish(const StepContext& context, const Linearization& here, State& next) {
+  const Reduced& reduced = here.reduced();
+  const std::vector<SolidForces>& forces = here.forces();
   const Model& model = context.model;
   next.time = context.start.time + context.h;
-  for (std::size_t i = 0; i < next.solids.size(); ++i)
+  for (std::size_t i = 0; i < next.solids.size(); ++i) {
     next.solids[i].v = (next.solids[i].x - context.start.solids[i].x) * context.rate;
+    next.solids[i].reaction = forces[i].reaction;
+  }
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
     const rod::Rod& rod = model.rods[i].rod;
     const auto shape = rod::configure(rod, base_of(context, next, static_cast<int>(i)), next.rods[i].q);
@@ -160,6 +189,19 @@ const RodModel* exhausted(const Model& model, const State& state) {
     if (state.points[k].s < -kGuide * rod.rod.length()) return &rod;
   }
   return nullptr;
+}
+
+std::string inside_out(const Model& model, const State& state) {
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const solid::Body& body = model.solids[i].body;
+    const int cell = solid::folded_cell(body, state.solids[i].x);
+    if (cell < 0) continue;
+    const Vec3 rest = body.at_nodes(cell, body.rest).rowwise().mean();
+    char text[160];
+    std::snprintf(text, sizeof text, "cell %d, at rest near (%.4g, %.4g, %.4g) m", cell, rest.x(), rest.y(), rest.z());
+    return "solids." + model.solids[i].name + ": " + text;
+  }
+  return "";
 }
 
 double inertia_of(const StepContext& context) {

@@ -5,6 +5,9 @@
 
 namespace sinew {
 
+/// Puts held coordinates of solids where their frames are at the end of the step.
+void place_held(const StepContext& context, State& iterate);
+
 /// First guess of the end of the step: where the start is, carried along by moving frames.
 State first_guess(const StepContext& context);
 
@@ -13,7 +16,7 @@ State first_guess(const StepContext& context);
 void follow_points(const StepContext& context, State& iterate);
 
 /// Velocities, mass points and what else belongs to an accepted step.
-void finish(const StepContext& context, const Reduced& reduced, State& next);
+void finish(const StepContext& context, const Linearization& here, State& next);
 
 bool finite(const State& state);
 
@@ -22,6 +25,9 @@ bool turned_over(const StepContext& context, const State& state);
 
 /// The first rod that has been drawn past a sliding point, if any.
 const RodModel* exhausted(const Model& model, const State& state);
+
+/// Names a cell that has turned inside out, and where it is; empty if there is none.
+std::string inside_out(const Model& model, const State& state);
 
 /// [N/m] what holds the rods in their place in the step: their masses over h^2.
 double inertia_of(const StepContext& context);

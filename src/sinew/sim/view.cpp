@@ -98,8 +98,12 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
   view.when = when(model, state);
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const SolidModel& solid = model.solids[i];
-    view.solids.push_back({solid.name, solid.body.rest, state.solids[i].x, solid.body.tetrahedra, solid.surface,
-                           solid::von_mises(solid.body, state.solids[i].x)});
+    const Eigen::Matrix3Xd& x = state.solids[i].x;
+    view.solids.push_back({solid.name, solid.body.rest, x, solid.body.cells, solid.surface, {}});
+    Eigen::VectorXd& von_mises = view.solids.back().von_mises;
+    von_mises.resize(solid.body.elements());
+    for (int cell = 0; cell < solid.body.elements(); ++cell)
+      von_mises[cell] = solid::von_mises(solid::cauchy_stress(solid.body, cell, x));
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i)
     view.rods.push_back(sample_rod(model, state, static_cast<int>(i)));

@@ -6,74 +6,156 @@
 
 namespace sinew::solid {
 
-Body make_body(Eigen::Matrix3Xd rest, std::vector<Tetrahedron> tetrahedra, const Lame& material, double mass,
-               const std::vector<bool>& clamped) {
+ElementRest Body::element(int cell) const {
+  const auto e = static_cast<std::size_t>(cell);
+  const int points = first_point[e + 1] - first_point[e];
+  const double* gradient = gradients.data() + 3 * static_cast<std::ptrdiff_t>(first_gradient[e]);
+  return {Eigen::Map<const Eigen::Matrix3Xd>(gradient, 3, points * node_count(cells[e].kind)),
+          {volumes.data() + first_point[e], static_cast<std::size_t>(points)}};
+}
+
+double Body::volume(int cell) const {
+  double sum = 0.0;
+  for (const double v : element(cell).volumes) sum += v;
+  return sum;
+}
+
+namespace {
+
+/// Gradients and volumes at the quadrature points of all cells.
+void add_quadrature(Body& body) {
+  int points = 0, columns = 0;
+  for (const Cell& cell : body.cells) {
+    body.first_point.push_back(points);
+    body.first_gradient.push_back(columns);
+    points += static_cast<int>(quadrature(cell.kind).size());
+    columns += static_cast<int>(quadrature(cell.kind).size()) * node_count(cell.kind);
+  }
+  body.first_point.push_back(points);
+  body.gradients.resize(3, columns);
+  body.volumes.reserve(static_cast<std::size_t>(points));
+  for (int e = 0; e < body.elements(); ++e) {
+    const Cell& cell = body.cells[static_cast<std::size_t>(e)];
+    const NodeVectors X = body.at_nodes(e, body.rest);
+    Eigen::Index column = body.first_gradient[static_cast<std::size_t>(e)];
+    for (const GaussPoint& point : quadrature(cell.kind)) {
+      const NodeVectors slopes = shape_slopes(cell.kind, point.xi);
+      const Mat3 jacobian = X * slopes.transpose();  // dX / dxi
+      body.gradients.middleCols(column, X.cols()) = jacobian.inverse().transpose() * slopes;
+      body.volumes.push_back(point.weight * jacobian.determinant());
+      column += X.cols();
+    }
+  }
+}
+
+/// rho int N_a N_b dV of a cell; lumped, its diagonal raised to the cell's mass (always positive).
+Eigen::MatrixXd cell_mass(const Body& body, int e, MassMatrix kind) {
+  const Cell& cell = body.cells[static_cast<std::size_t>(e)];
+  const NodeVectors X = body.at_nodes(e, body.rest);
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(X.cols(), X.cols());
+  double volume = 0.0;
+  for (const GaussPoint& point : mass_quadrature(cell.kind)) {
+    const Mat3 jacobian = X * shape_slopes(cell.kind, point.xi).transpose();
+    const NodeValues N = shape_functions(cell.kind, point.xi);
+    const double weight = point.weight * jacobian.determinant();
+    M += weight * N * N.transpose();
+    volume += weight;
+  }
+  if (kind == MassMatrix::lumped) M = Eigen::MatrixXd((M.diagonal() * volume / M.trace()).asDiagonal());
+  return body.of(e).density * M;
+}
+
+void add_mass(Body& body, MassMatrix kind, std::optional<double> total) {
+  std::vector<Eigen::Triplet<double>> entries;
+  double sum = 0.0;
+  for (int e = 0; e < body.elements(); ++e) {
+    const Eigen::MatrixXd M = cell_mass(body, e, kind);
+    const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
+    for (Eigen::Index b = 0; b < M.cols(); ++b) {
+      for (Eigen::Index a = 0; a < M.rows(); ++a) {
+        if (a != b && kind == MassMatrix::lumped) continue;
+        entries.emplace_back(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)], M(a, b));
+      }
+    }
+    sum += M.sum();
+  }
+  body.mass.resize(body.nodes(), body.nodes());
+  body.mass.setFromTriplets(entries.begin(), entries.end());
+  if (total && sum > 0.0) body.mass *= *total / sum;
+  body.masses = body.mass * Eigen::VectorXd::Ones(body.nodes());
+}
+
+}  // namespace
+
+Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Material> materials,
+               std::vector<int> material, const Eigen::Array<bool, 3, Eigen::Dynamic>& held, MassMatrix kind,
+               std::optional<double> total) {
   Body body;
   body.rest = std::move(rest);
-  body.tetrahedra = std::move(tetrahedra);
-  body.material = material;
-  body.masses.setZero(body.nodes());
-  double total = 0.0;
-  for (const Tetrahedron& t : body.tetrahedra) {
-    Mat3 edges;
-    for (int i = 0; i < 3; ++i) edges.col(i) = body.rest.col(t[i + 1]) - body.rest.col(t[0]);
-    const Mat3 inverse = edges.inverse();
-    Eigen::Matrix<double, 3, 4> gradients;
-    gradients.rightCols<3>() = inverse.transpose();
-    gradients.col(0) = -gradients.rightCols<3>().rowwise().sum();
-    body.gradients.push_back(gradients);
-    body.volumes.push_back(edges.determinant() / 6.0);
-    total += body.volumes.back();
+  body.cells = std::move(cells);
+  body.materials = std::move(materials);
+  body.material = std::move(material);
+  add_quadrature(body);
+  add_mass(body, kind, total);
+  body.unknown.resize(3, body.nodes());
+  for (Eigen::Index node = 0; node < body.unknown.cols(); ++node) {
+    for (int axis = 0; axis < 3; ++axis) body.unknown(axis, node) = held(axis, node) ? -1 : body.unknowns++;
   }
-  for (int e = 0; e < body.elements(); ++e) {
-    for (int node : body.tetrahedra[e]) body.masses[node] += 0.25 * mass * body.volumes[e] / total;
-  }
-  for (int i = 0; i < body.nodes(); ++i) body.unknown.push_back(clamped[i] ? -1 : body.free_nodes++);
   return body;
 }
 
-Mat3 deformation_gradient(const Body& body, int element, const Eigen::Matrix3Xd& x) {
-  const Tetrahedron& t = body.tetrahedra[element];
-  const auto& g = body.gradients[element];
-  Mat3 F = Mat3::Zero();
-  for (int i = 0; i < 4; ++i) F += x.col(t[i]) * g.col(i).transpose();
-  return F;
-}
-
 std::vector<Mat3> rotations(const Body& body, const Eigen::Matrix3Xd& x) {
-  std::vector<Mat3> R(body.elements());
-  for (int e = 0; e < body.elements(); ++e) R[e] = polar_rotation(deformation_gradient(body, e, x));
+  std::vector<Mat3> R;
+  R.reserve(body.volumes.size());
+  for (int e = 0; e < body.elements(); ++e) {
+    const ElementRest rest = body.element(e);
+    const NodeVectors own = body.at_nodes(e, x);
+    for (std::size_t q = 0; q < rest.volumes.size(); ++q)
+      R.push_back(polar_rotation(deformation_gradient(rest, q, own)));
+  }
   return R;
 }
 
 namespace {
 
-/// Adds volume * P g_i to the nodes of an element.
-void scatter(const Body& body, int e, const Mat3& P, Eigen::Matrix3Xd& force) {
-  const Eigen::Matrix<double, 3, 4> f = body.volumes[e] * P * body.gradients[e];
-  for (int i = 0; i < 4; ++i) force.col(body.tetrahedra[e][i]) += f.col(i);
+void scatter(const Body& body, int e, const NodeVectors& own, Eigen::Matrix3Xd& force) {
+  const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
+  for (Eigen::Index i = 0; i < own.cols(); ++i) force.col(nodes[static_cast<std::size_t>(i)]) += own.col(i);
 }
 
 double largest_column(const Eigen::Matrix3Xd& columns) {
   return columns.cols() ? columns.colwise().norm().maxCoeff() : 0.0;
 }
 
+bool viscous(const Body& body, int e) {
+  const Lame& moduli = body.of(e).viscosity;
+  return moduli.mu > 0.0 || moduli.lambda != 0.0;
+}
+
+std::span<const Mat3> frames(const Body& body, int e, const std::vector<Mat3>& rotation) {
+  const auto cell = static_cast<std::size_t>(e);
+  return {rotation.data() + body.first_point[cell],
+          static_cast<std::size_t>(body.first_point[cell + 1] - body.first_point[cell])};
+}
+
 }  // namespace
 
 Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
   Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, body.nodes());
+  ElementResponse response;
   for (int e = 0; e < body.elements(); ++e) {
-    const Mat3 F = deformation_gradient(body, e, x);
-    scatter(body, e, stress(body.material, F, polar_rotation(F)), force);
+    evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::first, Tangent::exact, response);
+    scatter(body, e, response.force, force);
   }
   return force;
 }
 
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
   double energy = 0.0;
+  ElementResponse response;
   for (int e = 0; e < body.elements(); ++e) {
-    const Mat3 F = deformation_gradient(body, e, x);
-    energy += body.volumes[e] * energy_density(body.material, F, polar_rotation(F));
+    evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::none, Tangent::exact, response);
+    energy += response.energy;
   }
   return energy;
 }
@@ -82,60 +164,89 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
                           double* scale) {
   const Eigen::Matrix3Xd v = (x - start.x) * start.rate;
   const Eigen::Matrix3Xd elastic = elastic_force(body, x);
-  Eigen::Matrix3Xd viscous = Eigen::Matrix3Xd::Zero(3, body.nodes());
-  if (body.damping_stiffness > 0.0) {
-    for (int e = 0; e < body.elements(); ++e) {
-      const Mat3& R = start.rotation[e];
-      const Mat3 rate = R.transpose() * deformation_gradient(body, e, v);  // sum v_i g_i^T in the frame of the element
-      const Mat3 strain_rate = 0.5 * (rate + rate.transpose());
-      const Mat3 sigma = body.damping_stiffness * (2.0 * body.material.mu * strain_rate +
-                                                   body.material.lambda * strain_rate.trace() * Mat3::Identity());
-      scatter(body, e, R * sigma, viscous);
-    }
+  Eigen::Matrix3Xd damping = Eigen::Matrix3Xd::Zero(3, body.nodes());
+  for (int e = 0; e < body.elements() && start.rate > 0.0; ++e) {
+    if (!viscous(body, e)) continue;
+    scatter(body, e,
+            viscous_force(body.of(e).viscosity, body.element(e), frames(body, e, start.rotation), body.at_nodes(e, v)),
+            damping);
   }
-  const Eigen::Matrix3Xd inertia =
-      ((v - start.v) * start.rate + body.damping_mass * v).array().rowwise() * body.masses.transpose().array();
+  const Eigen::Matrix3Xd inertia = ((v - start.v) * start.rate + body.damping_mass * v) * body.mass;
   const Eigen::Matrix3Xd weight = gravity * body.masses.transpose();
   if (scale)
     *scale =
-        std::max({largest_column(elastic), largest_column(viscous), largest_column(inertia), largest_column(weight)});
-  return inertia + elastic + viscous - weight;
+        std::max({largest_column(elastic), largest_column(damping), largest_column(inertia), largest_column(weight)});
+  return inertia + elastic + damping - weight;
 }
 
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
-                      const InsertBlock& insert) {
-  const double viscous = body.damping_stiffness * start.rate;
+                      const InsertElement& insert) {
+  ElementResponse response;
   for (int e = 0; e < body.elements(); ++e) {
-    const Mat3 F = deformation_gradient(body, e, x);
-    const Mat3 R = polar_rotation(F);
-    const TangentFrame elastic =
-        kind == Tangent::exact ? exact_tangent(body.material, F, R) : rotated_tangent(body.material, R);
-    const TangentFrame damping = rotated_tangent(body.material, start.rotation[e]);
-    const auto& g = body.gradients[e];
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        const int row = body.unknown[body.tetrahedra[e][a]], column = body.unknown[body.tetrahedra[e][b]];
-        if (row < 0 || column < 0 || row < column) continue;
-        Mat3 block = body.volumes[e] * stiffness_block(body.material, elastic, g.col(a), g.col(b));
-        if (viscous > 0.0)
-          block += viscous * body.volumes[e] * stiffness_block(body.material, damping, g.col(a), g.col(b));
-        insert(e, a, b, block);
-      }
+    evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::second, kind, response);
+    if (start.rate > 0.0 && viscous(body, e))
+      add_viscous_stiffness(body.of(e).viscosity, start.rate, body.element(e), frames(body, e, start.rotation),
+                            response.stiffness);
+    insert(e, response.stiffness);
+  }
+}
+
+double mass_factor(const Body& body, double rate) { return (rate + body.damping_mass) * rate; }
+
+int folded_cell(const Body& body, const Eigen::Matrix3Xd& x) {
+  for (int e = 0; e < body.elements(); ++e) {
+    const ElementRest rest = body.element(e);
+    const NodeVectors own = body.at_nodes(e, x);
+    for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
+      if (!(deformation_gradient(rest, q, own).determinant() > 0.0)) return e;
     }
   }
+  return -1;
 }
 
-Eigen::VectorXd mass_diagonal(const Body& body, double rate) {
-  return body.masses * ((rate + body.damping_mass) * rate);
-}
+namespace {
 
-Eigen::VectorXd von_mises(const Body& body, const Eigen::Matrix3Xd& x) {
-  Eigen::VectorXd values(body.elements());
-  for (int e = 0; e < body.elements(); ++e) {
-    const Mat3 F = deformation_gradient(body, e, x);
-    values[e] = von_mises(corotated_stress(body.material, F, polar_rotation(F)));
+Mat3 symmetric(const Mat3& m) { return 0.5 * (m + m.transpose()); }
+
+}  // namespace
+
+Mat3 cauchy_stress(const Body& body, int cell, const Eigen::Matrix3Xd& x) {
+  const ElementRest rest = body.element(cell);
+  const NodeVectors own = body.at_nodes(cell, x);
+  const double theta = mean_dilatation(body.of(cell).law, rest, own);
+  Mat3 kirchhoff = Mat3::Zero();
+  double now = 0.0;
+  for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
+    const Mat3 F = deformation_gradient(rest, q, own);
+    kirchhoff += rest.volumes[q] * stress(body.of(cell).law, F, theta) * F.transpose();
+    now += rest.volumes[q] * F.determinant();
   }
-  return values;
+  return symmetric(kirchhoff / now);
+}
+
+namespace {
+
+Mat3 gradient_at(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x) {
+  const Cell& cell = body.cells[static_cast<std::size_t>(point.element)];
+  return cell_nodes(x, cell) * gradients(body.rest, cell, point.local).transpose();
+}
+
+}  // namespace
+
+Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x) {
+  const Law& law = body.of(point.element).law;
+  const double theta = mean_dilatation(law, body.element(point.element), body.at_nodes(point.element, x));
+  const Mat3 F = gradient_at(body, point, x);
+  return symmetric(cauchy_stress(stress(law, F, theta), F));
+}
+
+Mat3 green_strain(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x) {
+  const Mat3 F = gradient_at(body, point, x);
+  return 0.5 * (F.transpose() * F - Mat3::Identity());
+}
+
+Vec3 principal_values(const Mat3& tensor) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(tensor, Eigen::EigenvaluesOnly).eigenvalues().reverse();
 }
 
 }  // namespace sinew::solid

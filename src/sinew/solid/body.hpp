@@ -1,78 +1,106 @@
 // A deformable volume in global coordinates: its immutable data, and the two halves of (7) and (8), forces and tangent.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <functional>
+#include <optional>
 #include <vector>
 
-#include "sinew/solid/corotational.hpp"
+#include "sinew/solid/elasticity.hpp"
+#include "sinew/solid/embedding.hpp"
 #include "sinew/solid/mesh.hpp"
 
 namespace sinew::solid {
 
-/// Linear tetrahedra with lumped mass; some nodes clamped. Built once, read by everything below.
-struct Body {
-  Eigen::Matrix3Xd rest;  ///< [m] node positions without load, in the world
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<Eigen::Matrix<double, 3, 4>> gradients;  ///< [1/m] of the four shape functions, per tetrahedron
-  std::vector<double> volumes;                         ///< [m^3]
-  Lame material;
-  Eigen::VectorXd masses;        ///< [kg] lumped, one per node
-  double damping_mass = 0.0;     ///< Rayleigh [1/s]
-  double damping_stiffness = 0;  ///< Rayleigh [s]
-  std::vector<int> unknown;      ///< per node: number among the free nodes, or -1 if clamped
-  int free_nodes = 0;
-
-  int nodes() const { return static_cast<int>(rest.cols()); }
-  int elements() const { return static_cast<int>(tetrahedra.size()); }
+/// What some of a body's cells are made of.
+struct Material {
+  Law law;
+  double density = 0.0;  ///< [kg/m^3]
+  Lame viscosity;        ///< [Pa s] of the whole Kelvin-Voigt damping, Rayleigh's part of the stiffness included
 };
 
-/// Gradients and volumes from `rest` and `tetrahedra`, masses of a given total [kg] spread by volume. `clamped` per
-/// node.
-Body make_body(Eigen::Matrix3Xd rest, std::vector<Tetrahedron> tetrahedra, const Lame& material, double mass,
-               const std::vector<bool>& clamped);
+enum class MassMatrix { lumped, consistent };
 
-/// F = sum_i x_i g_i^T of one element.
-Mat3 deformation_gradient(const Body& body, int element, const Eigen::Matrix3Xd& x);
+/// Elements of any kinds and laws; some coordinates of nodes are held. Built once, read by everything below.
+struct Body {
+  Eigen::Matrix3Xd rest;  ///< [m] node positions without load, in the world
+  std::vector<Cell> cells;
+  std::vector<Material> materials;
+  std::vector<int> material;         ///< of each cell
+  std::vector<int> first_point;      ///< per cell, and one more: its quadrature points among all
+  std::vector<int> first_gradient;   ///< per cell: its columns in `gradients`
+  std::vector<double> volumes;       ///< [m^3] per quadrature point
+  Eigen::Matrix3Xd gradients;        ///< [1/m] shape function gradients, see ElementRest
+  Eigen::SparseMatrix<double> mass;  ///< [kg] nodes x nodes; the same in all directions
+  Eigen::VectorXd masses;            ///< [kg] its row sums: what gravity acts on
+  double damping_mass = 0.0;         ///< Rayleigh's alpha [1/s]
+  Eigen::Matrix3Xi unknown;          ///< per node and axis: number among the unknowns, or -1 where it is held
+  int unknowns = 0;
 
-/// Polar rotations of all elements.
+  int nodes() const { return static_cast<int>(rest.cols()); }
+  int elements() const { return static_cast<int>(cells.size()); }
+  int points() const { return static_cast<int>(volumes.size()); }
+  ElementRest element(int cell) const;
+  double volume(int cell) const;
+  const Material& of(int cell) const {
+    return materials[static_cast<std::size_t>(material[static_cast<std::size_t>(cell)])];
+  }
+  /// Columns of x, or of anything given per node, at a cell's nodes.
+  NodeVectors at_nodes(int cell, const Eigen::Matrix3Xd& x) const {
+    return cell_nodes(x, cells[static_cast<std::size_t>(cell)]);
+  }
+};
+
+/// `material` per cell, `held` 3 x nodes. `total` [kg] replaces the densities' mass, keeping how it is spread.
+Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Material> materials,
+               std::vector<int> material, const Eigen::Array<bool, 3, Eigen::Dynamic>& held,
+               MassMatrix kind = MassMatrix::lumped, std::optional<double> total = {});
+
+/// Polar rotations at all quadrature points.
 std::vector<Mat3> rotations(const Body& body, const Eigen::Matrix3Xd& x);
 
 /// What a time step needs to know about its start.
 struct StepStart {
   Eigen::Matrix3Xd x, v;       ///< [m], [m/s] at the start
-  std::vector<Mat3> rotation;  ///< polar rotations there: the frame in which damping acts during the step
+  std::vector<Mat3> rotation;  ///< polar rotations there: the frames in which damping acts during the step
   double rate = 0.0;           ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
 };
 
 /// Elastic force [N], 3 x n: dE/dx, so that it stands with a plus on the left of the equation of motion.
 Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x);
 
-/// Elastic energy [J].
+/// Elastic energy [J]; infinite where an element's law ends (turned inside out, and not made for it).
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 
-/// Left minus right side of (7) under backward Euler, without the multipliers, 3 x n [N]:
-///     M (v - v_0) / h + a M v + f(x) + b K_0 v - M g,      v = (x - x_0) / h,
-/// with Rayleigh's a and b and K_0 the stiffness rotated as at the start of the step (symmetric, never gains energy).
+/// Left minus right side of (7) under backward Euler, without loads and multipliers, 3 x n [N]:
+///     M (v - v_0) / h + a M v + f(x) + D_0 v - M g,      v = (x - x_0) / h,
+/// with Rayleigh's a and the viscous D_0 in the frames of the start of the step (symmetric, never gains energy).
 /// `scale` [N] receives the largest single contribution at any node: what the residual is measured against.
 Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
                           double* scale = nullptr);
 
-/// Which elastic tangent: `exact`, or `rotated` (R K R^T of the paper, always positive semi-definite).
-enum class Tangent { exact, rotated };
+/// Takes the matrix of one element, 3n x 3n.
+using InsertElement = std::function<void(int cell, const ElementMatrix& matrix)>;
 
-/// Takes a 3 x 3 block for a pair of free nodes (a, b) with a >= b.
-using InsertBlock = std::function<void(int element, int local_a, int local_b, const Mat3& block)>;
-
-/// The matrix of (10) divided by h: A = M (1 + a h) / h^2 + b K_0 / h + K(x), element by element through `insert`
-/// (local_a, local_b are corners 0..3). Mass and mass damping are on the diagonal: mass_diagonal().
+/// The matrix of (10) divided by h, A = M (1 + a h) / h^2 + D_0 / h + K(x), but for its mass, element by element.
+/// mass_factor() times Body::mass is what is missing.
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
-                      const InsertBlock& insert);
+                      const InsertElement& insert);
 
-/// Per node: m (1 / h + a) / h.
-Eigen::VectorXd mass_diagonal(const Body& body, double rate);
+/// (1 / h + a) / h.
+double mass_factor(const Body& body, double rate);
 
-/// Von Mises stress [Pa] per element.
-Eigen::VectorXd von_mises(const Body& body, const Eigen::Matrix3Xd& x);
+/// A cell whose volume has vanished or turned inside out somewhere, -1 if there is none.
+int folded_cell(const Body& body, const Eigen::Matrix3Xd& x);
+
+/// Cauchy stress sigma = P F^T / J [Pa] at a point, with the mean dilatation of its element; and the mean over the
+/// volume that a cell has now.
+Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);
+Mat3 cauchy_stress(const Body& body, int cell, const Eigen::Matrix3Xd& x);
+/// Green-Lagrange strain (F^T F - I) / 2 at a point.
+Mat3 green_strain(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);
+
+/// Eigenvalues of a symmetric tensor, largest first.
+Vec3 principal_values(const Mat3& tensor);
 
 }  // namespace sinew::solid

@@ -1,65 +1,74 @@
 #include "sinew/solid/corotational.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "sinew/lie/rotation.hpp"
+#include "sinew/solid/invariants.hpp"
 
 namespace sinew::solid {
+namespace {
 
-Lame lame(double young, double poisson) {
-  return {young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))};
-}
-
-Mat3 polar_rotation(const Mat3& F) {
+Mat3 polar_by_svd(const Mat3& F) {
   const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 U = svd.matrixU();
   if ((U * svd.matrixV().transpose()).determinant() < 0.0)
     U.col(2) *= -1.0;  // turn the smallest stretch, it is the cheapest
-  return U * svd.matrixV().transpose();
+  const Mat3 R = U * svd.matrixV().transpose();
+  return 0.5 * (R + cofactor(R) / R.determinant());  // one step of Newton: orthogonal to the last digit
 }
 
-double energy_density(const Lame& material, const Mat3& F, const Mat3& R) {
-  const double trace = (R.transpose() * F).trace() - 3.0;
-  return material.mu * (F - R).squaredNorm() + 0.5 * material.lambda * trace * trace;
+}  // namespace
+
+// Newton for R^T R = I: X <- (g X + X^-T / g) / 2 halves the distance of every stretch to 1, then squares it; g brings
+// the stretches together as long as they are far from 1 (Higham, Functions of Matrices, chapter 8).
+Mat3 polar_rotation(const Mat3& F) {
+  constexpr int kMost = 12;
+  Mat3 X = F;
+  bool far = true;
+  for (int i = 0; i < kMost; ++i) {
+    const Mat3 C = cofactor(X);
+    const double J = X.col(0).dot(C.col(0)), size = X.squaredNorm();
+    // Nearly flat or inverted (J of a rotation is 1, its squared norm 3): Newton would lose digits or end at a mirror.
+    if (i == 0 && !(J > 0.0 && J * J > 1e-6 * size * size * size)) return polar_by_svd(F);
+    const double g = far ? std::sqrt(std::sqrt(C.squaredNorm() / size) / J) : 1.0;
+    const Mat3 next = 0.5 * g * X + 0.5 / (g * J) * C;
+    const double change = (next - X).squaredNorm();  // the error left is half of this
+    X = next;
+    if (change < 1e-16) return X;
+    far = change > 1e-2;
+  }
+  return polar_by_svd(F);
 }
 
-Mat3 stress(const Lame& material, const Mat3& F, const Mat3& R) {
-  const double trace = (R.transpose() * F).trace() - 3.0;
-  return 2.0 * material.mu * (F - R) + material.lambda * trace * R;
+Turning frozen_turning(const Mat3& F, Derivatives wanted) {
+  Turning turning{polar_rotation(F), Mat9(), true};
+  if (wanted != Derivatives::second) return turning;
+  const Mat3& R = turning.R;
+  for (int j = 0; j < 3; ++j) {  // (dF - R dF^T R) / 2
+    for (int k = 0; k < 3; ++k) {
+      turning.slope.block<3, 3>(3 * j, 3 * k) = -0.5 * R.col(k) * R.col(j).transpose();
+    }
+  }
+  turning.slope.diagonal().array() += 0.5;
+  return turning;
 }
 
-Mat3 corotated_stress(const Lame& material, const Mat3& F, const Mat3& R) {
-  const Mat3 T = F * R.transpose();  // left stretch, up to rounding symmetric
-  const Mat3 e = 0.5 * (T + T.transpose()) - Mat3::Identity();
-  return 2.0 * material.mu * e + material.lambda * e.trace() * Mat3::Identity();
-}
-
-TangentFrame exact_tangent(const Lame& material, const Mat3& F, const Mat3& R) {
+// dR = [omega]x R,  (tr T I - T) omega = axial(dF R^T - R dF^T),  T = R S R^T  (McAdams et al. 2011).
+// With H = ([R_0]x [R_1]x [R_2]x) over the columns of R the right side is H vec(dF), and vec(dR) = H^T omega.
+Turning exact_turning(const Mat3& F, Derivatives wanted) {
+  if (wanted != Derivatives::second) return {polar_rotation(F), Mat9(), false};
+  const Mat3 R = polar_rotation(F);
   const Mat3 T = 0.5 * (F * R.transpose() + R * F.transpose());
   const double trace = T.trace();
-  Mat3 D = trace * Mat3::Identity() - T;
+  const Mat3 D = trace * Mat3::Identity() - T;
   const double determinant = D.determinant(), scale = std::pow(std::abs(trace) + T.norm(), 3);
-  // Where two stretches add up to zero the frame may turn freely (an inverted element on the edge of another rotation):
-  // frozen there, the tangent stays finite.
-  if (!(std::abs(determinant) > 1e-9 * scale)) return rotated_tangent(material, R);
-  return {R, D.inverse(), material.lambda * (trace - 3.0) - 2.0 * material.mu};
-}
-
-TangentFrame rotated_tangent(const Lame& material, const Mat3& R) {
-  return {R, 0.5 * Mat3::Identity(), -2.0 * material.mu};
-}
-
-Mat3 stiffness_block(const Lame& material, const TangentFrame& frame, const Vec3& gradient_i, const Vec3& gradient_j) {
-  const Vec3 bi = frame.R * gradient_i, bj = frame.R * gradient_j;
-  Mat3 K = material.lambda * bi * bj.transpose() - frame.turning * (lie::hat(bi) * frame.G * lie::hat(bj));
-  K.diagonal().array() += 2.0 * material.mu * gradient_i.dot(gradient_j);
-  return K;
-}
-
-double von_mises(const Mat3& cauchy) {
-  const Mat3 deviator = cauchy - cauchy.trace() / 3.0 * Mat3::Identity();
-  return std::sqrt(1.5) * deviator.norm();
+  if (!(std::abs(determinant) > 1e-9 * scale)) return frozen_turning(F, wanted);
+  Eigen::Matrix<double, 3, 9> H;
+  H << lie::hat(R.col(0)), lie::hat(R.col(1)), lie::hat(R.col(2));
+  const Eigen::Matrix<double, 3, 9> GH = D.inverse() * H;
+  return {R, H.transpose() * GH, false};
 }
 
 }  // namespace sinew::solid

@@ -1,53 +1,71 @@
-// The corotational law: linear elasticity in a frame that turns with the element.
-//
-// With the polar decomposition F = R S and the Lame constants mu, lambda, the energy density is
-//     psi(F) = mu |S - I|^2 + lambda / 2 tr(S - I)^2,
-// its stress P = 2 mu (F - R) + lambda tr(S - I) R equals R K (R^T x - X) written per volume: the variation of R does
-// no work. Derivation and the exact tangent are in README.md of this folder.
+// The corotational law: linear elasticity in a frame that turns with the material. With the polar decomposition F = R S
+//     w = mu |F - R|^2,   v = tr(R^T F) - 3,   U = lambda / 2 v^2.
+// Derivation in README.md of this folder.
 #pragma once
 
-#include <Eigen/Core>
+#include "sinew/solid/law.hpp"
+#include "sinew/solid/moduli.hpp"
 
 namespace sinew::solid {
 
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
-
-struct Lame {
-  double mu = 0.0;      ///< [Pa]
-  double lambda = 0.0;  ///< [Pa]
-};
-
-/// From Young's modulus [Pa] and Poisson's ratio in (-1, 0.5).
-Lame lame(double young, double poisson);
-
-/// The rotation nearest to F (a proper one, also where det F <= 0).
+/// The rotation nearest to F: a proper one, also where det F <= 0 (there the smallest stretch is turned).
 Mat3 polar_rotation(const Mat3& F);
 
-/// psi(F) [J/m^3].
-double energy_density(const Lame& material, const Mat3& F, const Mat3& R);
-
-/// First Piola-Kirchhoff stress P = d psi / dF [Pa].
-Mat3 stress(const Lame& material, const Mat3& F, const Mat3& R);
-
-/// Cauchy stress of the linear law in the turned frame, sigma = R (2 mu e + lambda tr e I) R^T with e = S - I [Pa].
-Mat3 corotated_stress(const Lame& material, const Mat3& F, const Mat3& R);
-
-/// How stress changes with nodal positions. For shape function gradients g_i, g_j the 3 x 3 stiffness block of the pair
-/// is
-///     volume * ( 2 mu g_i.g_j I + lambda b_i b_j^T - turning [b_i]x G [b_j]x ),     b = R g.
-/// `exact` is d P / dF; `rotated` freezes R (R K R^T of the paper): positive semi-definite, the same at rest.
-struct TangentFrame {
+/// R and how it follows F.
+struct Turning {
   Mat3 R;
-  Mat3 G;          ///< how much the frame turns: (tr(T) I - T)^-1 with the left stretch T = R S R^T; I / 2 if frozen
-  double turning;  ///< lambda tr(S - I) - 2 mu; -2 mu if frozen
+  Mat9 slope;           ///< dR/dF, symmetric
+  bool frozen = false;  ///< R held: the slope is that at F = R, v is linear
 };
-TangentFrame exact_tangent(const Lame& material, const Mat3& F, const Mat3& R);
-TangentFrame rotated_tangent(const Lame& material, const Mat3& R);
+/// Frozen where two stretches add up to zero: there R jumps (an inverted element on the edge of another rotation).
+Turning exact_turning(const Mat3& F, Derivatives wanted);
+Turning frozen_turning(const Mat3& F, Derivatives wanted);
 
-Mat3 stiffness_block(const Lame& material, const TangentFrame& frame, const Vec3& gradient_i, const Vec3& gradient_j);
+struct Corotational {
+  static constexpr bool kInvertible = true;
+  double young = 0.0;    ///< [Pa]
+  double poisson = 0.0;  ///< [-]
+  Lame moduli;
 
-/// sqrt(3/2) times the norm of the deviator [Pa].
-double von_mises(const Mat3& cauchy);
+  Part shape(const Mat3& F, Derivatives wanted) const { return shape(F, exact_turning(F, wanted), wanted); }
+  Part dilatation(const Mat3& F, Derivatives wanted) const { return dilatation(F, exact_turning(F, wanted), wanted); }
+  Volumetric volumetric(double v) const { return {0.5 * moduli.lambda * v * v, moduli.lambda * v, moduli.lambda}; }
+  Lame lame() const { return moduli; }
+
+  /// Both at the cost of one.
+  Parts parts(const Mat3& F, Derivatives wanted) const { return parts(F, exact_turning(F, wanted), wanted); }
+  /// The same with R frozen in the second derivatives: linear elasticity in the frame R (R K R^T of the paper),
+  /// positive semi-definite, exact at rest.
+  Parts rotated(const Mat3& F, Derivatives wanted) const { return parts(F, frozen_turning(F, wanted), wanted); }
+
+  Part shape(const Mat3& F, const Turning& turning, Derivatives wanted) const;
+  Part dilatation(const Mat3& F, const Turning& turning, Derivatives wanted) const;
+  Parts parts(const Mat3& F, const Turning& turning, Derivatives wanted) const {
+    return {shape(F, turning, wanted), dilatation(F, turning, wanted)};
+  }
+};
+
+inline Corotational corotational(double young, double poisson) { return {young, poisson, lame(young, poisson)}; }
+
+inline Part Corotational::shape(const Mat3& F, const Turning& turning, Derivatives wanted) const {
+  Part w;
+  const Mat3 strain = F - turning.R;
+  w.value = moduli.mu * strain.squaredNorm();
+  if (wanted != Derivatives::none)
+    w.first = 2.0 * moduli.mu * strain;  // dR does no work: it is [omega]x R, S symmetric
+  if (wanted == Derivatives::second) {
+    w.second = -2.0 * moduli.mu * turning.slope;
+    w.second.diagonal().array() += 2.0 * moduli.mu;
+  }
+  return w;
+}
+
+inline Part Corotational::dilatation(const Mat3& F, const Turning& turning, Derivatives wanted) const {
+  Part v;
+  v.value = turning.R.cwiseProduct(F).sum() - 3.0;
+  if (wanted != Derivatives::none) v.first = turning.R;
+  if (wanted == Derivatives::second && !turning.frozen) v.second = turning.slope;
+  return v;
+}
 
 }  // namespace sinew::solid

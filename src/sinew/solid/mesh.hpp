@@ -4,26 +4,63 @@
 #include <Eigen/Core>
 #include <array>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "sinew/solid/element.hpp"
+
 namespace sinew::solid {
 
-using Tetrahedron = std::array<int, 4>;  ///< node numbers, positive volume: (b-a)x(c-a).(d-a) > 0
-using Triangle = std::array<int, 3>;     ///< node numbers, counter-clockwise seen from outside
-
-/// Nodes [file units until scaled, then m] and the cells this engine uses. Nodes that no tetrahedron uses are kept here
-/// (numbers stay those of the file); `build` rejects or drops them.
-struct Mesh {
-  Eigen::Matrix3Xd nodes;               ///< 3 x n, one column a node
-  std::vector<Tetrahedron> tetrahedra;  ///< cells
-  std::map<std::string, int> ignored;   ///< other cells of the file: kind ("triangle", "line", ...) and how many
+/// An element: its kind and as many node numbers as that has, in VTK's order, positive volume.
+struct Cell {
+  Kind kind = Kind::tet4;
+  std::array<int, kMostNodes> node{};
+  std::span<const int> nodes() const { return {node.data(), static_cast<std::size_t>(node_count(kind))}; }
+  bool operator==(const Cell&) const = default;
 };
 
-/// Boundary triangles of the tetrahedra, outward.
-std::vector<Triangle> surface(const std::vector<Tetrahedron>& tetrahedra);
+/// A triangle (3 or 6 nodes) or quadrilateral (4) of a file's surface mesh, or of an element.
+struct CellFace {
+  int count = 3;
+  std::array<int, 6> node{};
+  std::span<const int> nodes() const { return {node.data(), static_cast<std::size_t>(count)}; }
+  bool operator==(const CellFace&) const = default;
+};
 
-/// Signed volume of a tetrahedron, in the cube of the nodes' unit.
-double volume(const Eigen::Matrix3Xd& nodes, const Tetrahedron& tetrahedron);
+/// Cells, faces and nodes that a file has given a common name: a physical group of Gmsh, or the number in an integer
+/// array over a VTK file's cells.
+struct Group {
+  std::vector<int> cells;  ///< numbers among Mesh::cells
+  std::vector<CellFace> faces;
+  std::vector<int> nodes;  ///< of its points, faces and cells, ascending, without repetition
+};
+
+using Triangle = std::array<int, 3>;  ///< node numbers, counter-clockwise seen from outside
+
+/// Nodes [file units until scaled, then m] and the cells this engine uses. Nodes that no cell uses are kept here
+/// (numbers stay those of the file); `build` drops them.
+struct Mesh {
+  Eigen::Matrix3Xd nodes;  ///< 3 x n, one column a node
+  std::vector<Cell> cells;
+  std::map<std::string, Group> groups;
+  std::map<std::string, int> ignored;  ///< other cells of the file: kind ("wedge", "line", ...) and how many
+};
+
+/// Boundary faces of the cells, outward, each with all its nodes; in the order of the cells. Faces with the same
+/// corners are the same face, whether or not both have nodes in the middle of their edges.
+std::vector<CellFace> boundary(const std::vector<Cell>& cells);
+/// The same as triangles of all its nodes: a face of 6 nodes becomes four, of 4 nodes two.
+std::vector<Triangle> surface(const std::vector<Cell>& cells);
+std::vector<Triangle> triangles(const std::vector<CellFace>& faces);
+
+/// The positions of a cell's nodes, in its order.
+NodeVectors cell_nodes(const Eigen::Matrix3Xd& nodes, const Cell& cell);
+
+/// Volume of a cell by its mass quadrature, in the cube of the nodes' unit: exact, negative if inverted.
+double volume(const Eigen::Matrix3Xd& nodes, const Cell& cell);
+/// The smallest determinant of dX/dxi at its quadrature points and nodes, over the mean of their sizes: 1 for affine
+/// cells, not positive where the cell is folded, inverted or without volume.
+double smallest_jacobian(const Eigen::Matrix3Xd& nodes, const Cell& cell);
 
 }  // namespace sinew::solid

@@ -1,0 +1,73 @@
+#include <cmath>
+
+#include "sinew/sim/building.hpp"
+#include "sinew/sim/solid_matrix.hpp"
+
+namespace sinew::building {
+
+void check_drive(const Drive& drive, const std::string& path) {
+  const Table* table = std::get_if<Table>(&drive);
+  if (table && (table->times.empty() || table->times.size() != table->values.size()))
+    reject(path, std::to_string(table->times.size()) + " times",
+           "a table needs as many times as values, and at least one", "give a constant or a table");
+}
+
+namespace {
+
+RodLoadModel on_rod(const Model& model, const RodLoad& load, const std::string& path) {
+  RodLoadModel own;
+  own.rod = find_rod(model, load.rod, path + ".rod");
+  own.force = load.force;
+  own.moment = load.moment;
+  own.follower = load.follower;
+  if (load.from.has_value() != load.to.has_value() || (load.from && load.at))
+    reject(path, load.rod, "needs `at` for a point load, or `from` and `to` for a distributed one",
+           "give one or the other");
+  if (!load.from) {
+    own.at.push_back({abscissa_on(model, own.rod, load.at, path + ".at"), 1.0});
+    return own;
+  }
+  const double from = abscissa_on(model, own.rod, load.from, path + ".from");
+  const double to = abscissa_on(model, own.rod, load.to, path + ".to");
+  if (!(to > from))
+    reject(path + ".to", text(to) + " m", "must be greater than `from`, " + text(from) + " m",
+           "loads run towards the tip");
+  for (const rod::Section& section : model.rods[own.rod].rod.sections) {
+    const double begin = std::max(from, section.begin), end = std::min(to, section.end);
+    if (!(end > begin)) continue;
+    const rod::GaussRule& rule = rod::gauss_rule(4);
+    for (std::size_t g = 0; g < rule.node.size(); ++g)
+      own.at.push_back({begin + (end - begin) * rule.node[g], (end - begin) * rule.weight[g]});
+  }
+  return own;
+}
+
+SolidLoadModel on_solid(const Model& model, const SolidLoad& load, const std::string& path) {
+  SolidLoadModel own;
+  own.solid = find(model.scene.solids, load.solid, path + ".solid", "solid");
+  const SolidModel& solid = model.solids[own.solid];
+  const Selection selection = select(solid, load.region, path);
+  if (!load.force.isZero(0.0)) own.force = load.force * shares(solid, selection).transpose();
+  if (load.pressure == 0.0) return own;
+  if (selection.faces.empty())
+    reject(path, "", "no face of the surface lies in this region with all its nodes", "enlarge the region");
+  own.pressure = load.pressure;
+  own.faces = selection.faces;
+  own.places = face_places(solid, own.faces);
+  return own;
+}
+
+}  // namespace
+
+void build_load(Model& model, const std::string& name, const Load& load) {
+  const std::string path = "loads." + name;
+  LoadModel own;
+  own.name = name;
+  own.factor = std::visit([](const auto& one) { return one.factor; }, load);
+  check_drive(own.factor, path + ".factor");
+  if (const RodLoad* rod = std::get_if<RodLoad>(&load)) own.on = on_rod(model, *rod, path);
+  if (const SolidLoad* solid = std::get_if<SolidLoad>(&load)) own.on = on_solid(model, *solid, path);
+  model.loads.push_back(std::move(own));
+}
+
+}  // namespace sinew::building

@@ -1,0 +1,144 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <set>
+
+#include "sinew/sim/building.hpp"
+#include "sinew/solid/pressure.hpp"
+
+namespace sinew::building {
+
+namespace {
+
+/// Which nodes a region holds.
+class Inside {
+ public:
+  Inside(const SolidModel& solid, const std::string& path) : solid_(solid), path_(path) {}
+
+  std::vector<bool> operator()(const Box& box) const {
+    const double slack = 1e-9 * solid_.mesh.diagonal;
+    return each(box.in, [&](const Vec3& x) {
+      return ((x - box.lower).array() >= -slack).all() && ((x - box.upper).array() <= slack).all();
+    });
+  }
+  std::vector<bool> operator()(const Sphere& sphere) const {
+    require_positive(sphere.radius, path_ + ".sphere.radius", "give the radius of the region");
+    return each(sphere.in, [&](const Vec3& x) { return (x - sphere.center).norm() <= sphere.radius; });
+  }
+  std::vector<bool> operator()(const Plane& plane) const {
+    if (!(plane.normal.norm() > 0.0))
+      reject(path_ + ".plane.normal", text(plane.normal), "must not be zero", "give a direction, as [1, 0, 0]");
+    const double within = plane.within.value_or(1e-6 * solid_.mesh.diagonal);
+    const Vec3 n = plane.normal.normalized();
+    return each(plane.in, [&](const Vec3& x) { return std::abs(n.dot(x - plane.point)) <= within; });
+  }
+  std::vector<bool> operator()(const NodeNumbers& list) const {
+    std::vector<bool> in(nodes(), false);
+    const std::vector<int>& number = solid_.mesh.number;
+    for (const int node : list.numbers) {
+      if (node < 0 || node >= static_cast<int>(number.size()))
+        reject(
+            path_ + ".nodes", std::to_string(node),
+            "must be from 0 to " + std::to_string(static_cast<int>(number.size()) - 1) + ", as the file numbers nodes",
+            "check the numbers");
+      if (number[node] < 0)
+        reject(path_ + ".nodes", std::to_string(node), "no element of the mesh uses this node", "remove it");
+      in[number[node]] = true;
+    }
+    return in;
+  }
+  std::vector<bool> operator()(const GroupName& group) const {
+    const auto found = solid_.mesh.groups.find(group.name);
+    if (found == solid_.mesh.groups.end()) {
+      std::string known;
+      for (const auto& [name, own] : solid_.mesh.groups) known += (known.empty() ? "" : ", ") + name;
+      reject(path_ + ".group", group.name, "the mesh file has no group of this name",
+             known.empty() ? "the file has no groups: save it from Gmsh with physical groups" : "known: " + known);
+    }
+    std::vector<bool> in(nodes(), false);
+    for (const int node : found->second.nodes) in[node] = true;
+    return in;
+  }
+  std::vector<bool> operator()(const WholeSurface&) const {
+    std::vector<bool> in(nodes(), false);
+    for (const solid::CellFace& face : solid_.mesh.boundary) {
+      for (const int node : face.nodes()) in[node] = true;
+    }
+    return in;
+  }
+
+ private:
+  std::size_t nodes() const { return static_cast<std::size_t>(solid_.mesh.object.cols()); }
+  template <class Test>
+  std::vector<bool> each(In where, const Test& test) const {
+    const Eigen::Matrix3Xd& x = where == In::world ? solid_.body.rest : solid_.mesh.object;
+    std::vector<bool> in;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) in.push_back(test(x.col(i)));
+    return in;
+  }
+
+  const SolidModel& solid_;
+  const std::string& path_;
+};
+
+std::set<int> corners(const solid::CellFace& face) {
+  const auto count = static_cast<std::size_t>(face.count == 4 ? 4 : 3);
+  return {face.node.begin(), face.node.begin() + count};
+}
+
+}  // namespace
+
+Selection select(const SolidModel& solid, const Region& region, const std::string& path) {
+  const std::vector<bool> in = std::visit(Inside(solid, path), region);
+  const auto all_in = [&in](std::span<const int> nodes) {
+    return std::all_of(nodes.begin(), nodes.end(), [&in](int node) { return in[node]; });
+  };
+  Selection selection;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (in[i]) selection.nodes.push_back(static_cast<int>(i));
+  }
+  if (selection.nodes.empty()) {
+    const bool world = std::visit(
+        [](const auto& own) {
+          if constexpr (requires { own.in; }) return own.in == In::world;
+          return false;
+        },
+        region);
+    const Eigen::Matrix3Xd& x = world ? solid.body.rest : solid.mesh.object;
+    const Box* box = std::get_if<Box>(&region);
+    reject(path, box ? text(box->lower) + " .. " + text(box->upper) + " m" : "",
+           "no node of the mesh lies in this region",
+           "the nodes span " + text(Vec3(x.rowwise().minCoeff())) + " .. " + text(Vec3(x.rowwise().maxCoeff())) +
+               " m " + (world ? "in the world" : "before the pose") + "; check scale and units");
+  }
+  const GroupName* name = std::get_if<GroupName>(&region);
+  const solid::Group* group = name ? &solid.mesh.groups.at(name->name) : nullptr;
+  if (group && !group->cells.empty()) {
+    selection.cells = group->cells;
+  } else {
+    for (std::size_t e = 0; e < solid.body.cells.size(); ++e) {
+      if (all_in(solid.body.cells[e].nodes())) selection.cells.push_back(static_cast<int>(e));
+    }
+  }
+  std::set<std::set<int>> named;
+  if (group) {
+    for (const solid::CellFace& face : group->faces) named.insert(corners(face));
+  }
+  for (const solid::CellFace& face : solid.mesh.boundary) {
+    if (named.empty() ? all_in(face.nodes()) : named.contains(corners(face))) selection.faces.push_back(face);
+  }
+  return selection;
+}
+
+Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection) {
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(solid.mesh.object.cols());
+  for (const solid::CellFace& face : selection.faces) {
+    const solid::FaceValues own = solid::face_shares(face, solid.body.rest);
+    for (int i = 0; i < face.count; ++i) weight[face.node[i]] += own[i];
+  }
+  if (selection.faces.empty()) {
+    for (const int node : selection.nodes) weight[node] = 1.0;
+  }
+  return weight / weight.sum();
+}
+
+}  // namespace sinew::building

@@ -1,0 +1,49 @@
+// The stable neo-Hookean law of Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2),
+// 2018, (14), with mu' = 4/3 mu, lambda' = lambda + 5/6 mu, less its value at rest: with I = |F|^2
+//     w = mu' / 2 (I - 3 - log((I + 1) / 4)) - 3/4 mu' (J - 1) + 5/12 mu (J - 1)^2,   v = J,   U = lambda / 2 (v -
+//     1)^2.
+// Cut so that each part by itself is at rest at rest, and U has all of lambda, the modulus that locks, and no more. It
+// stays finite and pushes back when an element is flat or inverted.
+#pragma once
+
+#include <cmath>
+
+#include "sinew/solid/invariants.hpp"
+#include "sinew/solid/law.hpp"
+#include "sinew/solid/moduli.hpp"
+
+namespace sinew::solid {
+
+struct NeoHookean {
+  static constexpr bool kInvertible = true;
+  double young = 0.0;    ///< [Pa]
+  double poisson = 0.0;  ///< [-]
+  Lame moduli;
+
+  Part shape(const Mat3& F, Derivatives wanted) const {
+    Part w;
+    const double mu = 4.0 / 3.0 * moduli.mu, stiff = 5.0 / 6.0 * moduli.mu;
+    const double I = F.squaredNorm(), share = 1.0 / (I + 1.0);
+    const Part J = determinant(F, wanted == Derivatives::none ? wanted : Derivatives::first);
+    const double e = J.value - 1.0, slope = stiff * e - 0.75 * mu;
+    w.value = 0.5 * mu * (I - 3.0 - std::log1p(0.25 * (I - 3.0))) + (0.5 * stiff * e - 0.75 * mu) * e;
+    if (wanted == Derivatives::none) return w;
+    w.first = mu * (1.0 - share) * F + slope * J.first;
+    if (wanted == Derivatives::first) return w;
+    const Vec9 f = F.reshaped(), cof = J.first.reshaped();
+    w.second = (2.0 * mu * share * share * f) * f.transpose() + (stiff * cof) * cof.transpose();
+    w.second.diagonal().array() += mu * (1.0 - share);
+    add_determinant_second(F, slope, w.second);
+    return w;
+  }
+
+  Part dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
+  Volumetric volumetric(double v) const {
+    return {0.5 * moduli.lambda * (v - 1.0) * (v - 1.0), moduli.lambda * (v - 1.0), moduli.lambda};
+  }
+  Lame lame() const { return moduli; }
+};
+
+inline NeoHookean neo_hookean(double young, double poisson) { return {young, poisson, lame(young, poisson)}; }
+
+}  // namespace sinew::solid

@@ -1,0 +1,109 @@
+#include "sinew/solid/ogden.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace sinew::solid {
+
+Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given) {
+  assert(terms.size() <= static_cast<std::size_t>(Ogden::kMostTerms));
+  Ogden law;
+  for (const OgdenTerm& term : terms) {
+    law.terms[law.count++] = term;
+    law.shear += 0.5 * term.mu * term.alpha;
+  }
+  law.bulk = bulk_modulus(law.shear, given);
+  return law;
+}
+
+// One-sided Jacobi: turn the columns of F by pairs until they are perpendicular. Stretches keep all their digits,
+// however small, equal or close to each other (Demmel, Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
+Principal principal(const Mat3& F) {
+  constexpr int kMostSweeps = 20;
+  Mat3 A = F, V = Mat3::Identity();
+  bool turned = true;
+  for (int sweep = 0; turned && sweep < kMostSweeps; ++sweep) {
+    turned = false;
+    for (int k = 0; k < 3; ++k) {
+      const int i = k, j = (k + 1) % 3;
+      const double a = A.col(i).squaredNorm(), b = A.col(j).squaredNorm(), c = A.col(i).dot(A.col(j));
+      if (!(c * c > 1e-31 * a * b)) continue;
+      turned = true;
+      const double z = 0.5 * (b - a) / c, t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
+      const double cosine = 1.0 / std::sqrt(1.0 + t * t), sine = cosine * t;
+      for (Mat3* M : {&A, &V}) {
+        const Vec3 x = M->col(i), y = M->col(j);
+        M->col(i) = cosine * x - sine * y;
+        M->col(j) = sine * x + cosine * y;
+      }
+    }
+  }
+  const Vec3 stretch = A.colwise().norm();
+  return {A * stretch.cwiseInverse().asDiagonal(), V, stretch};
+}
+
+// With x_i = log l_i and b_i = exp(alpha (x_i - mean x)): f_i = dw/dl_i = s_i / l_i, s_i = sum mu (b_i - mean b).
+// In the principal frame the second derivative is d f_i / d l_j on the diagonal strains and, for each pair of axes,
+//     (f_i - f_j) / (l_i - l_j) on (u_i v_j^T + u_j v_i^T) / sqrt 2,
+//     (f_i + f_j) / (l_i + l_j) on (u_i v_j^T - u_j v_i^T) / sqrt 2.
+// The first without a difference of near numbers:
+//     (b_i - b_j) / (l_i - l_j) = sqrt(b_i b_j / (l_i l_j)) sinh(alpha h) / sinh h,   h = (x_i - x_j) / 2.
+Part Ogden::shape(const Mat3& F, Derivatives wanted) const {
+  Part w;
+  if (!(F.determinant() > 0.0)) {
+    w.value = std::numeric_limits<double>::infinity();
+    return w;
+  }
+  const auto [U, V, l] = principal(F);
+  const Vec3 x = l.array().log();
+  const Vec3 y = x.array() - x.mean();
+  const bool second = wanted == Derivatives::second;
+
+  Vec3 s = Vec3::Zero();       // d w / d x_i
+  Mat3 ds = Mat3::Zero();      // d s_i / d x_j
+  Vec3 slopes = Vec3::Zero();  // k: (s_i - s_j) / (l_i - l_j) of the other two
+  for (int p = 0; p < count; ++p) {
+    const auto [mu, alpha] = terms[p];
+    const Vec3 less = (alpha * y).unaryExpr([](double e) { return std::expm1(e); });  // b - 1
+    w.value += mu / alpha * less.sum();
+    s += mu * (less.array() - less.mean()).matrix();
+    if (!second) continue;
+    const Vec3 b = less.array() + 1.0;
+    ds.diagonal() += mu * alpha * b;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) ds(i, j) += mu * alpha * (b.mean() - b[i] - b[j]) / 3.0;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const double h = 0.5 * (x[i] - x[j]), ratio = h == 0.0 ? alpha : std::sinh(alpha * h) / std::sinh(h);
+      slopes[k] += mu * ratio * std::sqrt(b[i] * b[j] / (l[i] * l[j]));
+    }
+  }
+  if (wanted == Derivatives::none) return w;
+  const Vec3 f = s.cwiseQuotient(l);
+  w.first = U * f.asDiagonal() * V.transpose();
+  if (!second) return w;
+
+  Mat9 axes, bent = Mat9::Zero();  // columns: unit changes of F; what each does to the stress
+  Mat3 H = ds;
+  H.diagonal() -= s;
+  H = l.cwiseInverse().asDiagonal() * H * l.cwiseInverse().asDiagonal();
+  for (int i = 0; i < 3; ++i) axes.col(i) = (U.col(i) * V.col(i).transpose()).reshaped();
+  bent.leftCols<3>() = axes.leftCols<3>() * H;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const Mat3 ij = std::sqrt(0.5) * U.col(i) * V.col(j).transpose();
+    const Mat3 ji = std::sqrt(0.5) * U.col(j) * V.col(i).transpose();
+    // (f_i - f_j) / (l_i - l_j), f = s / l
+    const double stretching = 0.5 * (slopes[k] * (l[i] + l[j]) - (s[i] + s[j])) / (l[i] * l[j]);
+    axes.col(3 + k) = (ij + ji).reshaped();
+    axes.col(6 + k) = (ij - ji).reshaped();
+    bent.col(3 + k) = stretching * axes.col(3 + k);
+    bent.col(6 + k) = (f[i] + f[j]) / (l[i] + l[j]) * axes.col(6 + k);
+  }
+  w.second.noalias() = bent * axes.transpose();
+  return w;
+}
+
+}  // namespace sinew::solid

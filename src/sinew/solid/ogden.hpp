@@ -1,0 +1,46 @@
+// Ogden (Ogden, Non-linear Elastic Deformations, 7.2; Holzapfel, Nonlinear Solid Mechanics, 6.5): in the principal
+// stretches l_i of F, made isochoric,
+//     w = sum_p mu_p / alpha_p (sum_i (J^(-1/3) l_i)^alpha_p - 3),   v = J,   U = K / 2 (v - 1)^2.
+// Shear modulus at rest: sum mu_p alpha_p / 2. One pair (mu, 2) is neo-Hookean, two (2 c10, 2), (-2 c01, -2) are
+// Mooney-Rivlin.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "sinew/solid/invariants.hpp"
+#include "sinew/solid/law.hpp"
+#include "sinew/solid/moduli.hpp"
+
+namespace sinew::solid {
+
+struct OgdenTerm {
+  double mu = 0.0;     ///< [Pa]
+  double alpha = 0.0;  ///< [-], not 0
+};
+
+struct Ogden {
+  static constexpr bool kInvertible = false;
+  static constexpr int kMostTerms = 6;
+  std::array<OgdenTerm, kMostTerms> terms{};
+  int count = 0;
+  double bulk = 0.0;   ///< K [Pa]
+  double shear = 0.0;  ///< at rest [Pa]
+
+  Part shape(const Mat3& F, Derivatives wanted) const;
+  Part dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
+  Volumetric volumetric(double v) const { return {0.5 * bulk * (v - 1.0) * (v - 1.0), bulk * (v - 1.0), bulk}; }
+  Lame lame() const { return lame_from_bulk(shear, bulk); }
+};
+
+/// From at most kMostTerms terms.
+Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given);
+
+/// F = U diag(stretch) V^T for det F > 0, U and V both proper or both improper; stretches in no order.
+struct Principal {
+  Mat3 U, V;
+  Vec3 stretch;
+};
+Principal principal(const Mat3& F);
+
+}  // namespace sinew::solid

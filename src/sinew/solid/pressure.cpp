@@ -1,0 +1,60 @@
+#include "sinew/solid/pressure.hpp"
+
+#include <Eigen/Dense>
+
+#include "sinew/lie/rotation.hpp"
+
+namespace sinew::solid {
+
+namespace {
+
+Face kind_of(const CellFace& face) { return {face.count == 4 ? 4 : 3, face.count, {0, 1, 2, 3, 4, 5}}; }
+
+Eigen::Matrix3Xd at_nodes(const CellFace& face, const Eigen::Matrix3Xd& x) {
+  Eigen::Matrix3Xd own(3, face.count);
+  for (int i = 0; i < face.count; ++i) own.col(i) = x.col(face.node[static_cast<std::size_t>(i)]);
+  return own;
+}
+
+}  // namespace
+
+FaceValues face_shares(const CellFace& face, const Eigen::Matrix3Xd& x) {
+  const Face kind = kind_of(face);
+  const Eigen::Matrix3Xd own = at_nodes(face, x);
+  FaceValues shares = FaceValues::Zero(face.count);
+  for (const FacePoint& point : face_quadrature(kind)) {
+    const Eigen::Matrix<double, 3, 2> tangents = own * face_slopes(kind, point.xi).transpose();
+    shares += point.weight * tangents.col(0).cross(tangents.col(1)).norm() * face_functions(kind, point.xi);
+  }
+  return shares;
+}
+
+Eigen::Matrix3Xd pressure_force(const CellFace& face, double p, const Eigen::Matrix3Xd& x) {
+  const Face kind = kind_of(face);
+  const Eigen::Matrix3Xd own = at_nodes(face, x);
+  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, face.count);
+  for (const FacePoint& point : face_quadrature(kind)) {
+    const Eigen::Matrix<double, 3, 2> tangents = own * face_slopes(kind, point.xi).transpose();
+    force -= p * point.weight * tangents.col(0).cross(tangents.col(1)) * face_functions(kind, point.xi).transpose();
+  }
+  return force;
+}
+
+Eigen::MatrixXd pressure_tangent(const CellFace& face, double p, const Eigen::Matrix3Xd& x) {
+  const Face kind = kind_of(face);
+  const Eigen::Matrix3Xd own = at_nodes(face, x);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * face.count, 3 * face.count);
+  for (const FacePoint& point : face_quadrature(kind)) {
+    const FaceSlopes slopes = face_slopes(kind, point.xi);
+    const FaceValues N = face_functions(kind, point.xi);
+    const Eigen::Matrix<double, 3, 2> tangents = own * slopes.transpose();
+    const Mat3 first = lie::hat(tangents.col(0)), second = lie::hat(tangents.col(1));
+    for (int b = 0; b < face.count; ++b) {
+      const Mat3 turned = p * point.weight * (slopes(1, b) * first - slopes(0, b) * second);
+      for (int a = 0; a < face.count; ++a) K.block<3, 3>(3 * a, 3 * b) += N[a] * turned;
+    }
+  }
+  return K;
+}
+
+}  // namespace sinew::solid
