@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/error/input_error.hpp"
 #include "support/scenes.hpp"
 
 namespace sinew {
@@ -357,6 +358,25 @@ TEST(Advance, halving_ends_after_five_times) {
   EXPECT_EQ(trace.end, RunEnd::stopped);
   EXPECT_EQ(trace.failure.status, Status::max_iterations);
   EXPECT_EQ(trace.states.size(), 1u);
+}
+
+TEST(Build, a_solid_that_nothing_holds_may_fly_but_has_no_equilibrium) {
+  Scene scene = test::cable_block();
+  scene.solids[0].second.fixed.clear();
+  scene.rods.clear();
+  scene.couplings.clear();
+  scene.actuators.clear();
+  const Model model = build(scene, test::read_block);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("falls or turns freely"), std::string::npos);
+  scene.analysis = Analysis::quasi_static;
+  try {
+    build(scene, test::read_block);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.fault().path, "solids.block.fixed");
+    EXPECT_NE(error.fault().rule.find("at least three nodes must be fixed"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -27,11 +27,7 @@ RodLoadModel on_rod(const Model& model, const RodLoad& load, const std::string& 
     own.at.push_back({abscissa_on(model, own.rod, load.at, path + ".at"), 1.0});
     return own;
   }
-  const double from = abscissa_on(model, own.rod, load.from, path + ".from");
-  const double to = abscissa_on(model, own.rod, load.to, path + ".to");
-  if (!(to > from))
-    reject(path + ".to", text(to) + " m", "must be greater than `from`, " + text(from) + " m",
-           "loads run towards the tip");
+  const auto [from, to] = stretch_on(model, own.rod, load.from, load.to, path, "loads run towards the tip");
   for (const rod::Section& section : model.rods[own.rod].rod.sections) {
     const double begin = std::max(from, section.begin), end = std::min(to, section.end);
     if (!(end > begin)) continue;

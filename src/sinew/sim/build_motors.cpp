@@ -10,11 +10,9 @@ namespace {
 rod::Tendon make_tendon(const Model& model, int rod, const Tendon& tendon, const std::string& path) {
   const double length = model.rods[rod].rod.length();
   rod::Tendon own;
-  own.from = abscissa_on(model, rod, tendon.from, path + ".from");
-  own.to = abscissa_on(model, rod, tendon.to, path + ".to");
-  if (!(own.to > own.from))
-    reject(path + ".to", text(own.to) + " m", "must be greater than `from`, " + text(own.from) + " m",
-           "a tendon runs towards the tip");
+  const Stretch runs = stretch_on(model, rod, tendon.from, tendon.to, path, "a tendon runs towards the tip");
+  own.from = runs.from;
+  own.to = runs.to;
   for (const double distance : {tendon.distance.start, tendon.distance.end}) {
     if (!(distance >= 0.0 && distance <= length))
       reject(path + ".distance", text(distance) + " m", "must lie between 0 and the length of the rod",

@@ -12,8 +12,7 @@ namespace sinew::building {
 solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
                                   const std::string& path, const std::string& what) {
   solid::EmbeddedPoint point = solid::embed(solid.body.rest, solid.body.cells, x);
-  const double diagonal = (solid.body.rest.rowwise().maxCoeff() - solid.body.rest.rowwise().minCoeff()).norm();
-  const double limit = reach.value_or(0.1 * diagonal);
+  const double limit = reach.value_or(0.1 * solid.mesh.diagonal);
   if (point.distance > limit) {
     reject(path, text(x) + " m (world)",
            what + " lies " + text(point.distance) + " m outside solids." + solid.name + ", beyond the reach of " +

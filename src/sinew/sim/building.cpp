@@ -59,6 +59,14 @@ double abscissa_on(const Model& model, int rod, const std::optional<double>& at,
   return std::min(*at, length);
 }
 
+Stretch stretch_on(const Model& model, int rod, const std::optional<double>& from, const std::optional<double>& to,
+                   const std::string& path, const std::string& remedy) {
+  const Stretch own{abscissa_on(model, rod, from, path + ".from"), abscissa_on(model, rod, to, path + ".to")};
+  if (!(own.to > own.from))
+    reject(path + ".to", text(own.to) + " m", "must be greater than `from`, " + text(own.from) + " m", remedy);
+  return own;
+}
+
 rod::Configuration start_shape(const RodModel& rod) { return rod::configure(rod.rod, rod.base, rod.start); }
 
 Placement stand(const Scene& scene, int frame, const Pose& pose) {

@@ -69,6 +69,13 @@ double length_of(const Model& model, const Line& line);
 /// An abscissa on a rod: given, or the tip; rejected outside.
 double abscissa_on(const Model& model, int rod, const std::optional<double>& at, const std::string& path);
 
+/// The abscissae of a piece of a rod, one end given or the rod's own; rejected unless `to` is beyond `from`.
+struct Stretch {
+  double from = 0.0, to = 0.0;
+};
+Stretch stretch_on(const Model& model, int rod, const std::optional<double>& from, const std::optional<double>& to,
+                   const std::string& path, const std::string& remedy);
+
 /// A rod at the start of the run.
 rod::Configuration start_shape(const RodModel& rod);
 

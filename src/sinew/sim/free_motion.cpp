@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
 
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/solid_loads.hpp"
@@ -26,6 +27,15 @@ StepContext make_context(const Model& model, const State& start, const Command& 
 
 namespace {
 
+/// Loads of one volume, each with its factor at the end of the step.
+template <class Visit>
+void each_load(const StepContext& context, int number, const Visit& visit) {
+  for (std::size_t i = 0; i < context.model.loads.size(); ++i) {
+    const SolidLoadModel* load = std::get_if<SolidLoadModel>(&context.model.loads[i].on);
+    if (load && load->solid == number) visit(*load, context.command.loads[i]);
+  }
+}
+
 bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
 
 }  // namespace
@@ -36,34 +46,26 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
   Eigen::Matrix3Xd r =
       solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, &forces.scale);
   const SolidModel& model = context.model.solids[number];
-  r += spring_forces(context, model, iterate.solids[number].x);
-  for (std::size_t i = 0; i < context.model.loads.size(); ++i) {
-    const SolidLoadModel* load = std::get_if<SolidLoadModel>(&context.model.loads[i].on);
-    if (!load || load->solid != number) continue;
-    const Eigen::Matrix3Xd acting = context.command.loads[i] * load_forces(*load, iterate.solids[number].x);
+  const Eigen::Matrix3Xd& x = iterate.solids[number].x;
+  if (model.springs.size() > 0) r += spring_forces(context, model, x);
+  each_load(context, number, [&](const SolidLoadModel& load, double factor) {
+    const Eigen::Matrix3Xd acting = factor * load_forces(load, x);
     r -= acting;
     forces.scale = std::max(forces.scale, acting.colwise().norm().maxCoeff());
-  }
+  });
   for (const SolidRow& row : context.model.solid_rows) {
     if (row.solid != number || !is_on(iterate, row)) continue;
     const std::span<const int> nodes = body.cells[row.where.element].nodes();
     for (std::size_t c = 0; c < nodes.size(); ++c)
       r.col(nodes[c]) -= row.where.weights[static_cast<Eigen::Index>(c)] * iterate.lambda.segment<3>(row.row);  // H^T
   }
-  forces.r.resize(body.unknowns);
-  forces.reaction.resize(context.model.solids[number].held());
-  int held = 0;
-  for (int i = 0; i < body.nodes(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (body.unknown(axis, i) < 0) {
-        forces.reaction[held++] = r(axis, i);
-        r(axis, i) = 0.0;
-      } else {
-        forces.r[body.unknown(axis, i)] = r(axis, i);
-      }
-    }
-    forces.largest = std::max(forces.largest, r.col(i).norm());
+  forces.r = solid::at_unknowns(body, r);
+  forces.reaction.resize(model.held());
+  Eigen::Index held = 0;
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    if (body.unknown(i) < 0) forces.reaction[held++] = std::exchange(r(i), 0.0);
   }
+  forces.largest = r.colwise().norm().maxCoeff();
   return forces;
 }
 
@@ -74,10 +76,10 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
   {
     const Clock clock(times.assembly);
     assemble(model, context.solids[number], iterate.solids[number].x, kind, memory.matrix);
-    for (std::size_t i = 0; i < context.model.loads.size(); ++i) {
-      const SolidLoadModel* load = std::get_if<SolidLoadModel>(&context.model.loads[i].on);
-      if (load && load->solid == number && kind == solid::Tangent::exact)
-        add_pressure_tangent(model, *load, context.command.loads[i], iterate.solids[number].x, memory.matrix);
+    if (kind == solid::Tangent::exact) {
+      each_load(context, number, [&](const SolidLoadModel& load, double factor) {
+        add_pressure_tangent(model, load, factor, iterate.solids[number].x, memory.matrix);
+      });
     }
   }
   FreeMotion free;
@@ -124,14 +126,7 @@ Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& w
     y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
          dlambda.segment<3>(context.model.solid_rows[free.rows[k]].row);
   }
-  const Eigen::VectorXd dx = workspace.solids[number].factor.back_solve(y);
-  Eigen::Matrix3Xd motion = Eigen::Matrix3Xd::Zero(3, body.nodes());
-  for (int i = 0; i < body.nodes(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (body.unknown(axis, i) >= 0) motion(axis, i) = dx[body.unknown(axis, i)];
-    }
-  }
-  return motion;
+  return solid::from_unknowns(body, workspace.solids[number].factor.back_solve(y));
 }
 
 }  // namespace sinew

@@ -20,7 +20,6 @@ Linearization::Linearization(const StepContext& context, Workspace& workspace, c
   }
   const Clock clock(times.rods);
   reduced_ = linearize(context, iterate);
-  W_without_volumes_ = reduced_.problem.W;
   largest_ = std::max(largest_, reduced_.largest);
   scale_ = std::max(scale_, reduced_.scale);
 }
@@ -36,13 +35,17 @@ bool Linearization::finite() const {
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
   if (!factor_solids(kind, failed)) return false;
-  couple();
-  if (wanted == Wanted::descent && kind == solid::Tangent::exact && negative_ > 0 &&
-      negative_ + coupled_->negative() > context_.model.rows) {
-    rotated_ = true;
-    if (!factor_solids(solid::Tangent::definite, failed)) return false;
+  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) {
     couple();
+    return true;
   }
+  const Eigen::MatrixXd W = reduced_.problem.W;  // without the volumes, whose share may have to change
+  couple();
+  if (negative_ + coupled_->negative() <= context_.model.rows) return true;
+  rotated_ = true;
+  if (!factor_solids(solid::Tangent::definite, failed)) return false;
+  reduced_.problem.W = W;
+  couple();
   return true;
 }
 
@@ -69,7 +72,6 @@ bool Linearization::factor_solids(solid::Tangent kind, std::string& failed) {
 
 void Linearization::couple() {
   const Clock clock(times_.solve);
-  reduced_.problem.W = W_without_volumes_;
   add_compliance(context_, free_, reduced_.problem);
   coupled_.emplace(reduced_.problem);
 }

@@ -61,7 +61,6 @@ class Linearization {
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
   bool rotated_ = false;
   int negative_ = 0;  ///< eigenvalues of the volumes' tangents
-  Eigen::MatrixXd W_without_volumes_;
   std::vector<FreeMotion> free_;
   std::optional<solve::CoupledFactor> coupled_;
 };

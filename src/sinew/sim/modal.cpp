@@ -87,15 +87,8 @@ class Stiffness {
       u.setConstant(NAN);
       return;
     }
-    for (std::size_t i = 0; i < model.solids.size(); ++i) {
-      const solid::Body& body = model.solids[i].body;
-      for (int node = 0; node < body.nodes(); ++node) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const int unknown = body.unknown(axis, node);
-          if (unknown >= 0) u[at_->solids[i] + unknown] = answer.dx[i](axis, node);
-        }
-      }
-    }
+    for (std::size_t i = 0; i < model.solids.size(); ++i)
+      u.segment(at_->solids[i], model.solids[i].body.unknowns) = solid::at_unknowns(model.solids[i].body, answer.dx[i]);
     u.segment(at_->border, model.unknowns) = answer.reduced.dz;
     for (std::size_t i = 0; i < model.rods.size(); ++i)
       u.segment(at_->strains[i], model.rods[i].rod.strain_coordinates()) = answer.reduced.dq[i];
@@ -118,17 +111,8 @@ class Mass {
     Eigen::Map<Eigen::VectorXd> f(out, at_->size);
     for (std::size_t i = 0; i < at_->model.solids.size(); ++i) {
       const solid::Body& body = at_->model.solids[i].body;
-      Eigen::Matrix3Xd v = Eigen::Matrix3Xd::Zero(3, body.nodes());
-      const auto each = [&](const auto& visit) {
-        for (int node = 0; node < body.nodes(); ++node) {
-          for (int axis = 0; axis < 3; ++axis) {
-            if (body.unknown(axis, node) >= 0) visit(axis, node, at_->solids[i] + body.unknown(axis, node));
-          }
-        }
-      };
-      each([&](int axis, int node, Eigen::Index k) { v(axis, node) = u[k]; });
-      v = (v * body.mass).eval();
-      each([&](int axis, int node, Eigen::Index k) { f[k] = v(axis, node); });
+      const Eigen::Matrix3Xd v = solid::from_unknowns(body, u.segment(at_->solids[i], body.unknowns));
+      f.segment(at_->solids[i], body.unknowns) = solid::at_unknowns(body, v * body.mass);
     }
     f.tail(rods_.rows()) = rods_ * u.tail(rods_.rows());
   }
@@ -142,12 +126,7 @@ Increment shape_of(const Coordinates& at, const Eigen::VectorXd& v) {
   Increment shape;
   for (std::size_t i = 0; i < at.model.solids.size(); ++i) {
     const solid::Body& body = at.model.solids[i].body;
-    Eigen::Matrix3Xd& dx = shape.dx.emplace_back(Eigen::Matrix3Xd::Zero(3, body.nodes()));
-    for (int node = 0; node < body.nodes(); ++node) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (body.unknown(axis, node) >= 0) dx(axis, node) = v[at.solids[i] + body.unknown(axis, node)];
-      }
-    }
+    shape.dx.push_back(solid::from_unknowns(body, v.segment(at.solids[i], body.unknowns)));
   }
   shape.reduced.dz = v.segment(at.border, at.model.unknowns);
   shape.reduced.dlambda = Eigen::VectorXd::Zero(at.model.rows);

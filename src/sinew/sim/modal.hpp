@@ -11,8 +11,8 @@ struct NaturalMode {
 };
 
 /// Solves K v = omega^2 M v for all coordinates v that the rows leave free, lowest first; at most `count` modes, with
-/// solids those nearest to zero. K is
-/// the exact tangent at the state, gravity, loads, tendons and multipliers included; M the mass matrix (rod/dynamics).
+/// solids those nearest to zero. K is the exact tangent at the state, gravity, loads, tendons and multipliers included;
+/// M the mass matrix (solid/body, rod/dynamics).
 /// The scene's analysis must be modal. Empty, with the reason in `failed`, where rods have no mass, or loads no
 /// potential.
 std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace, const State& equilibrium, int count,

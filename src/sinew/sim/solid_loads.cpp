@@ -14,7 +14,6 @@ Eigen::Matrix3Xd load_forces(const SolidLoadModel& load, const Eigen::Matrix3Xd&
 }
 
 Eigen::Matrix3Xd spring_forces(const StepContext& context, const SolidModel& model, const Eigen::Matrix3Xd& x) {
-  if (model.springs.size() == 0) return Eigen::Matrix3Xd::Zero(3, x.cols());
   const Placement moved = context.moved(model.frame);
   const Eigen::Matrix3Xd rest = (moved.R * model.body.rest).colwise() + moved.p;
   return model.springs.cwiseProduct(x - rest);

@@ -14,12 +14,6 @@ ElementRest Body::element(int cell) const {
           {volumes.data() + first_point[e], static_cast<std::size_t>(points)}};
 }
 
-double Body::volume(int cell) const {
-  double sum = 0.0;
-  for (const double v : element(cell).volumes) sum += v;
-  return sum;
-}
-
 namespace {
 
 /// Gradients and volumes at the quadrature points of all cells.
@@ -102,6 +96,22 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
     for (int axis = 0; axis < 3; ++axis) body.unknown(axis, node) = held(axis, node) ? -1 : body.unknowns++;
   }
   return body;
+}
+
+Eigen::VectorXd at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal) {
+  Eigen::VectorXd u(body.unknowns);
+  for (Eigen::Index i = 0; i < nodal.size(); ++i) {
+    if (body.unknown(i) >= 0) u[body.unknown(i)] = nodal(i);
+  }
+  return u;
+}
+
+Eigen::Matrix3Xd from_unknowns(const Body& body, const Eigen::Ref<const Eigen::VectorXd>& u) {
+  Eigen::Matrix3Xd nodal = Eigen::Matrix3Xd::Zero(3, body.nodes());
+  for (Eigen::Index i = 0; i < nodal.size(); ++i) {
+    if (body.unknown(i) >= 0) nodal(i) = u[body.unknown(i)];
+  }
+  return nodal;
 }
 
 std::vector<Mat3> rotations(const Body& body, const Eigen::Matrix3Xd& x) {

@@ -41,7 +41,6 @@ struct Body {
   int elements() const { return static_cast<int>(cells.size()); }
   int points() const { return static_cast<int>(volumes.size()); }
   ElementRest element(int cell) const;
-  double volume(int cell) const;
   const Material& of(int cell) const {
     return materials[static_cast<std::size_t>(material[static_cast<std::size_t>(cell)])];
   }
@@ -50,6 +49,10 @@ struct Body {
     return cell_nodes(x, cells[static_cast<std::size_t>(cell)]);
   }
 };
+
+/// What a quantity given per node is at the body's unknowns, and a quantity at the unknowns per node, 0 where held.
+Eigen::VectorXd at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal);
+Eigen::Matrix3Xd from_unknowns(const Body& body, const Eigen::Ref<const Eigen::VectorXd>& u);
 
 /// `material` per cell, `held` 3 x nodes. `total` [kg] replaces the densities' mass, keeping how it is spread.
 Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Material> materials,

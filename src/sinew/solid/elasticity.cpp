@@ -40,8 +40,7 @@ void evaluate_by(const L& law, const ElementRest& rest, const NodeVectors& x, De
   double volume = 0.0, theta = 0.0;
   response.energy = 0.0;
   for (std::size_t q = 0; q < points; ++q) {
-    const Mat3 F = x * rest.gradients_at(q).transpose();
-    at[q] = parts_of(law, F, wanted, kind);
+    at[q] = parts_of(law, deformation_gradient(rest, q, x), wanted, kind);
     volume += rest.volumes[q];
     theta += rest.volumes[q] * at[q].dilatation.value;
     response.energy += rest.volumes[q] * at[q].shape.value;
