@@ -154,7 +154,7 @@ TEST(Statics, APathThatNeverReachesTheLoadEnds) {
   EXPECT_LT(trace.states.size(), 4000u);
 }
 
-TEST(Statics, ATieThatWouldTurnOverHalvesItsStep) {
+TEST(Statics, a_tie_turns_the_way_it_is_turned) {
   // Twisting the tip by 120 degrees in one step: the rows about the axes hold at -60 degrees, too.
   Scene scene = test::lone_rod(0.0, 4);
   scene.analysis = Analysis::quasi_static;
@@ -171,7 +171,6 @@ TEST(Statics, ATieThatWouldTurnOverHalvesItsStep) {
   const Model model = build(scene, test::read_block);
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
-  EXPECT_GT(trace.states.size(), 2u);
   EXPECT_NEAR(rod::strain(model.rods[0].rod, trace.states.back().rods[0].q, 0.25)[0],
               2.0 * std::numbers::pi / 3.0 / 0.5, 1e-6);
 }

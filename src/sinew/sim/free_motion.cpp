@@ -15,10 +15,7 @@ StepContext make_context(const Model& model, const State& start, const Command& 
   StepContext context{model, start, h, rate, command, model.scene.gravity, false, {}, {}, {}, {}};
   for (const auto& [name, frame] : model.scene.frames)
     context.displacement.push_back(frame_displacement(frame, start.time + h));
-  for (std::size_t i = 0; i < model.solids.size(); ++i) {
-    const SolidState& state = start.solids[i];
-    context.solids.push_back({state.x, state.v, solid::rotations(model.solids[i].body, state.x), rate});
-  }
+  for (const SolidState& solid : start.solids) context.solids.push_back({solid.x, solid.v, rate});
   for (const RodModel& rod : model.rods) context.bases.push_back(compose(context.moved(rod.frame), rod.base));
   for (const CableModel& cable : model.cables)
     context.cable_bases.push_back(compose(context.moved(cable.frame), cable.base));
@@ -47,11 +44,18 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
       solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, &forces.scale);
   const SolidModel& model = context.model.solids[number];
   const Eigen::Matrix3Xd& x = iterate.solids[number].x;
-  if (model.springs.size() > 0) r += spring_forces(context, model, x);
+  const auto count = [&forces](const Eigen::Matrix3Xd& acting) {
+    forces.scale = std::max(forces.scale, acting.colwise().norm().maxCoeff());
+  };
+  if (model.springs.size() > 0) {
+    const Eigen::Matrix3Xd acting = model.springs.cwiseProduct(spring_stretch(model, context.moved(model.frame), x));
+    r += acting;
+    count(acting);
+  }
   each_load(context, number, [&](const SolidLoadModel& load, double factor) {
     const Eigen::Matrix3Xd acting = factor * load_forces(load, x);
     r -= acting;
-    forces.scale = std::max(forces.scale, acting.colwise().norm().maxCoeff());
+    count(acting);
   });
   for (const SolidRow& row : context.model.solid_rows) {
     if (row.solid != number || !is_on(iterate, row)) continue;

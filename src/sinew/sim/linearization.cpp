@@ -76,9 +76,10 @@ void Linearization::couple() {
   coupled_.emplace(reduced_.problem);
 }
 
-void Linearization::stiffen(double part) {
+void Linearization::stiffen() {
+  constexpr double kPart = 1e-6;
   for (solve::ChainPart& chain : reduced_.problem.chains) {
-    for (int k = 0; k < chain.chain.links(); ++k) chain.chain.block(k).diagonal() *= 1.0 + part;
+    for (int k = 0; k < chain.chain.links(); ++k) chain.chain.block(k).diagonal() *= 1.0 + kPart;
   }
   coupled_.emplace(reduced_.problem);
 }

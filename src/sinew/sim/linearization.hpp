@@ -33,9 +33,9 @@ class Linearization {
   /// a path of equilibria (`any`) does not.
   enum class Wanted { descent, any };
   bool factor(solid::Tangent kind, Wanted wanted, std::string& failed);
-  /// Factors the coupled problem again with the rods' own stiffness raised by this part of itself: next to a limit
+  /// Factors the coupled problem again with the rods' own stiffness raised by a millionth: next to a limit
   /// point, where it is singular, the solution is as large as it must be and still has the right direction.
-  void stiffen(double part);
+  void stiffen();
   bool rotated() const { return rotated_; }  ///< a definite tangent stood in for the exact one
   /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
   /// a definite one stood in.

@@ -10,6 +10,7 @@
 
 #include "sinew/rod/dynamics.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/statics.hpp"
 
 namespace sinew {
 
@@ -219,7 +220,7 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
 }
 
 StepResult modal_step(const Model& model, Workspace& workspace, const State& state) {
-  StepResult result = step(model, workspace, command_at(model, 0.0), initial_state(model), 0.0);
+  StepResult result = equilibrium_step(model, workspace, command_at(model, 0.0), initial_state(model), 0.0);
   if (!accepted(result.report.status)) return {state, result.report};
   State equilibrium = result.next;
   std::vector<NaturalMode> modes =

@@ -2,20 +2,16 @@
 
 namespace sinew {
 
-namespace {
-
-Placement carried(const Model& model, const State& state, int frame, const Placement& base) {
-  return frame < 0 ? base : compose(frame_displacement(model.scene.frames[frame].second, state.time), base);
+Placement moved(const Model& model, const State& state, int frame) {
+  return frame < 0 ? Placement{} : frame_displacement(model.scene.frames[frame].second, state.time);
 }
 
-}  // namespace
-
 Placement rod_base(const Model& model, const State& state, int rod) {
-  return carried(model, state, model.rods[rod].frame, model.rods[rod].base);
+  return compose(moved(model, state, model.rods[rod].frame), model.rods[rod].base);
 }
 
 Placement cable_base(const Model& model, const State& state, int cable) {
-  return carried(model, state, model.cables[cable].frame, model.cables[cable].base);
+  return compose(moved(model, state, model.cables[cable].frame), model.cables[cable].base);
 }
 
 rod::Configuration rod_shape(const Model& model, const State& state, int rod) {

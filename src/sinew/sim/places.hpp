@@ -6,6 +6,9 @@
 
 namespace sinew {
 
+/// How far a frame has moved at the state's time; the ground (-1) has not.
+Placement moved(const Model& model, const State& state, int frame);
+
 /// What a rod or cable stands on at the state's time.
 Placement rod_base(const Model& model, const State& state, int rod);
 Placement cable_base(const Model& model, const State& state, int cable);

@@ -40,8 +40,10 @@ StepResult advance(const Model& model, Workspace& workspace, const State& state)
     if (part > whole * (1.0 + 1e-9)) continue;  // already tried, from further back
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
-    result = step(model, workspace, command_part(model, state, command_at(model, to), lands ? 1.0 : part / whole),
-                  state, lands ? whole : part);
+    const Command command = command_part(model, state, command_at(model, to), lands ? 1.0 : part / whole);
+    const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
+    result = equilibrium ? equilibrium_step(model, workspace, command, state, time)
+                         : step(model, workspace, command, state, lands ? whole : part);
     if (!accepted(result.report.status)) continue;
     result.next.time = time;
     if (lands) ++result.next.grid;

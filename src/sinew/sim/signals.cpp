@@ -6,6 +6,7 @@
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/solid_loads.hpp"
 
 namespace sinew {
 
@@ -203,6 +204,10 @@ EnergyBalance energy_balance(const Model& model, const State& state) {
     balance.kinetic += 0.5 * own.v.cwiseProduct(own.v * body.mass).sum();
     balance.elastic += solid::elastic_energy(body, own.x);
     balance.weight -= g.dot((own.x - body.rest) * body.masses);
+    const Eigen::Matrix3Xd& springs = model.solids[i].springs;
+    if (springs.size() == 0) continue;
+    const Eigen::Matrix3Xd drawn = spring_stretch(model.solids[i], moved(model, state, model.solids[i].frame), own.x);
+    balance.elastic += 0.5 * springs.cwiseProduct(drawn.cwiseAbs2()).sum();
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const rod::Rod& rod = model.rods[i].rod;

@@ -20,8 +20,9 @@ struct SignalGroup {
 ///   <output>.x|y|z [m], or .torsion .. .shear_z [1/m, -] of `strain`, .x|y|z in the axes of the cross-section of
 ///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; <actuator>.displacement [m] and
 ///   .force [N], or .angle [rad] and .torque [N m]; energy.kinetic|elastic|weight|work|dissipated [J]: weight is that
-///   of the gravitational field, 0 at the start; work is done by motors and loads, dissipated is what is missing in the
-///   balance: damping of the material and of the time step (and, with a minus, work of moving frames).
+///   of the gravitational field, 0 at the start; work is done by motors, loads and moving
+///   supports of solids, dissipated is what is missing in the balance: damping of the material and of the time step
+///   (and, with a minus, work of frames that move bases and ties of rods).
 std::vector<SignalGroup> signal_groups(const Model& model);
 
 std::vector<std::string> signal_names(const Model& model);

@@ -13,10 +13,8 @@ Eigen::Matrix3Xd load_forces(const SolidLoadModel& load, const Eigen::Matrix3Xd&
   return force;
 }
 
-Eigen::Matrix3Xd spring_forces(const StepContext& context, const SolidModel& model, const Eigen::Matrix3Xd& x) {
-  const Placement moved = context.moved(model.frame);
-  const Eigen::Matrix3Xd rest = (moved.R * model.body.rest).colwise() + moved.p;
-  return model.springs.cwiseProduct(x - rest);
+Eigen::Matrix3Xd spring_stretch(const SolidModel& model, const Placement& moved, const Eigen::Matrix3Xd& x) {
+  return (x - moved.R * model.body.rest).colwise() - moved.p;
 }
 
 }  // namespace sinew

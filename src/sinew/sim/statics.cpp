@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/sim/run.hpp"
+#include "sinew/sim/newton.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
@@ -14,163 +15,72 @@ namespace {
 constexpr double kFirstArc = 0.1, kLongestArc = 0.3, kShortestArc = 1e-7;
 /// Where stability is lost the path may branch, and a long step can miss the branch that a small load would take.
 constexpr double kArcAtBranch = kFirstArc / 64;
-constexpr double kStiffer = 1e-6;
 /// A path that has come back below no load, or takes more steps than this, does not lead to the full one.
 constexpr double kBehindTheStart = -0.05, kMostSteps = 3000;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 
-/// Everything prescribed at the load factor t.
-StepContext context_at(const Model& model, const State& start, double t) {
-  const double duration = model.scene.time.duration;
-  Command command = command_at(model, duration);
-  for (double& value : command.actuators) value *= t;
-  for (double& value : command.loads) value *= t;
-  StepContext context = make_context(model, start, command, t * duration - start.time);
-  context.gravity = t * model.scene.gravity;
-  return context;
-}
+/// What is prescribed along a path: all of it grows linearly from one end to the other.
+struct Ramp {
+  Command from, to;
+  Vec3 gravity_from, gravity_to;
+  double time_from = 0.0, time_to = 0.0;
 
-/// An increment as one vector: what each number turns [rad], or moves in units of the scene's size.
-Eigen::VectorXd measured(const Model& model, const Increment& increment) {
-  Eigen::Index size = increment.reduced.dz.size();
-  for (const auto& dx : increment.dx) size += dx.size();
-  for (const auto& dq : increment.reduced.dq) size += dq.size();
-  Eigen::VectorXd u(size);
-  Eigen::Index at = 0;
-  for (const auto& dx : increment.dx) {
-    u.segment(at, dx.size()) = dx.reshaped() / (model.size * std::sqrt(static_cast<double>(dx.cols())));
-    at += dx.size();
-  }
-  for (std::size_t n = 0; n < model.rods.size(); ++n) {
-    const rod::Rod& rod = model.rods[n].rod;
-    for (int i = 0; i < rod.count(); ++i) {
-      // A section's turn counts by its share of the rod, so that the measure does not depend on their number.
-      const double weight = std::sqrt(rod.sections[i].length() * rod.length());
-      for (int c = rod.first[i]; c < rod.first[i + 1]; ++c) u[at + c] = weight * increment.reduced.dq[n][c];
-    }
-    at += rod.strain_coordinates();
-  }
-  u.tail(increment.reduced.dz.size()) = increment.reduced.dz / model.size;
-  for (const RodModel& rod : model.rods) {
-    for (int i = 0; i < rod.rod.base_coordinates(); ++i) {
-      if (rod.rod.base[i].turns) u[at + rod.unknown + i] *= model.size;
-    }
-  }
-  return u;
-}
-
-/// Newton across (u', t'), or at a fixed t if that is empty. Reports what became of it.
-struct Corrector {
-  const Model& model;
-  Workspace& workspace;
-  const State& start;
-  Eigen::VectorXd direction;
-  double rate = 0.0;
-
-  /// dr/dt by a difference in t, exact where all loads are linear in it.
-  Increment rate_of_change(Linearization& here, const State& iterate, double t, StageTimes& times) const {
-    const double e = 1e-6;
-    const StepContext ahead = context_at(model, start, t + e);
-    State carried = iterate;
-    place_held(ahead, carried);
-    const Linearization there(ahead, workspace, carried, times);
-    Increment both = here.solve(there);
-    const Increment own = here.solve();
-    if (!own.reduced.ok) both.reduced.ok = false;
-    if (!both.reduced.ok) return both;
-    scale(both, own, 1.0 / e);
-    return both;
-  }
-
-  /// a <- (a - b) factor.
-  static void scale(Increment& a, const Increment& b, double factor) {
-    for (std::size_t i = 0; i < a.dx.size(); ++i) a.dx[i] = (a.dx[i] - b.dx[i]) * factor;
-    a.reduced.dz = (a.reduced.dz - b.reduced.dz) * factor;
-    a.reduced.dlambda = (a.reduced.dlambda - b.reduced.dlambda) * factor;
-    for (std::size_t i = 0; i < a.reduced.dq.size(); ++i)
-      a.reduced.dq[i] = (a.reduced.dq[i] - b.reduced.dq[i]) * factor;
-  }
-
-  StepReport correct(State& iterate, double& t) const {
-    StepReport report;
-    double stiffness = 0.0;
-    for (;; ++report.newton) {
-      const StepContext context = context_at(model, start, t);
-      place_held(context, iterate);
-      Linearization here(context, workspace, iterate, report.times);
-      report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
-      report.violation = here.violation();
-      report.status = Status::diverged;
-      if (!here.finite() || !std::isfinite(t)) return report;
-      if (report.newton > 0 && balanced(model, here, stiffness)) {
-        finish(context, here, iterate);
-        report.status = !finite(iterate)                ? Status::diverged
-                        : turned_over(context, iterate) ? Status::max_iterations
-                                                        : Status::converged;
-        if (const RodModel* rod = exhausted(model, iterate); rod && accepted(report.status)) {
-          report.status = Status::rod_exhausted;
-          report.detail = "rods." + rod->name;
-        }
-        return report;
-      }
-      report.status = Status::max_iterations;
-      // The rotated tangent of a volume makes Newton linear: more iterations, not shorter steps.
-      const int most = direction.size() > 0 && !report.rotated ? kMostIterations : model.scene.newton.limit;
-      if (report.newton == most) return report;
-      report.status = Status::singular;
-      if (!here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail)) return report;
-      report.rotated |= here.rotated();
-      report.unstable = here.unstable();
-      stiffness = std::max(stiffness, here.stiffness());
-      report.detail = "constraint rows and rods";
-      Increment increment = here.solve();
-      if (!increment.reduced.ok) {
-        here.stiffen(kStiffer);
-        increment = here.solve();
-      }
-      if (!increment.reduced.ok) return report;
-      double dt = 0.0;
-      if (direction.size() > 0) {
-        const Increment change = rate_of_change(here, iterate, t, report.times);
-        if (!change.reduced.ok) return report;
-        dt = -direction.dot(measured(model, increment)) / (direction.dot(measured(model, change)) + rate);
-        advance_by(context, change, dt, iterate);
-      }
-      const double fraction = direction.size() > 0 ? 1.0 : trusted_fraction(context, increment);
-      advance_by(context, increment, fraction, iterate);
-      t += dt;
-    }
-  }
+  double time(double t) const { return time_from + t * (time_to - time_from); }
 };
 
-/// The equilibrium at a fixed t nearest to an iterate.
-StepResult land(const Model& model, Workspace& workspace, const State& state, State iterate, double t) {
-  const Corrector corrector{model, workspace, state, {}, 0.0};
-  const StepReport report = corrector.correct(iterate, t);
-  if (!accepted(report.status)) return {state, report};
-  iterate.path = state.path;
-  return {std::move(iterate), report};
+Command nothing(const Model& model) {
+  return {std::vector<double>(model.actuators.size(), 0.0), std::vector<double>(model.loads.size(), 0.0)};
 }
 
-}  // namespace
+/// Contexts along a path from a state.
+ContextAt along(const Model& model, const Ramp& ramp, const State& start) {
+  return [&model, &ramp, &start](double t) {
+    const auto mixed = [t](double a, double b) { return a + t * (b - a); };
+    Command command = ramp.from;
+    std::transform(command.actuators.begin(), command.actuators.end(), ramp.to.actuators.begin(),
+                   command.actuators.begin(), mixed);
+    std::transform(command.loads.begin(), command.loads.end(), ramp.to.loads.begin(), command.loads.begin(), mixed);
+    StepContext context = make_context(model, start, command, ramp.time(t) - start.time);
+    context.gravity = ramp.gravity_from + t * (ramp.gravity_to - ramp.gravity_from);
+    return context;
+  };
+}
 
-StepResult static_step(const Model& model, Workspace& workspace, const State& state) {
-  const double duration = model.scene.time.duration;
-  const double t0 = state.time / duration;
-  if (state.path.step == 0.0) {  // before anything: the equilibrium without loads
-    StepResult result = land(model, workspace, state, state, 0.0);
-    result.next.path.step = kFirstArc;
-    result.next.path.stable = !result.report.unstable;
-    result.next.time = 0.0;
-    return result;
-  }
-
+struct Reached {
+  Iterate at;
   StepReport report;
-  const StepContext context = context_at(model, state, t0);
-  if (t0 < kBehindTheStart || state.path.count > kMostSteps) {
-    report.status = Status::path_lost;
-    return {state, report};
+};
+
+/// The equilibrium at the t of a first guess.
+Reached land(const Model& model, Workspace& workspace, const Ramp& ramp, const State& state, Iterate guess,
+             const NewtonRules& rules) {
+  guess.state.path = state.path;
+  Reached reached{std::move(guess), {}};
+  reached.report = newton(along(model, ramp, state), workspace, rules, reached.at);
+  return reached;
+}
+
+NewtonRules whole_steps(const Model& model) {
+  return {model.scene.newton.limit, false, Linearization::Wanted::any, nullptr};
+}
+
+/// One step along a path; its arc and what the next one needs are in the state's `path`. On failure `at` is where it
+/// started from.
+Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, const Iterate& from) {
+  const State& state = from.state;
+  if (state.path.step == 0.0) {  // before anything: the equilibrium at t = 0
+    Reached first = land(model, workspace, ramp, state, {state, 0.0}, whole_steps(model));
+    first.at.state.path.step = kFirstArc;
+    first.at.state.path.stable = !first.report.unstable;
+    return first;
   }
+  StepReport report;
+  if (from.t < kBehindTheStart || state.path.count > kMostSteps) {
+    report.status = Status::path_lost;
+    return {from, report};
+  }
+  const ContextAt at = along(model, ramp, state);
+  const StepContext context = at(from.t);
 
   // Sliding points that the rod's end has passed or reached: the path jumps to where it goes on with them.
   State followed = state;
@@ -178,62 +88,123 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
   const bool changed = !std::equal(state.points.begin(), state.points.end(), followed.points.begin(),
                                    [](const PointState& a, const PointState& b) { return a.on == b.on; });
   if (changed) {
-    StepResult result = land(model, workspace, state, followed, t0);
-    result.next.time = state.time;
-    if (accepted(result.report.status)) result.next.path.count = state.path.count + 1.0;
-    return result;
+    Reached jumped = land(model, workspace, ramp, state, {followed, from.t}, whole_steps(model));
+    jumped.at.state.path.count = state.path.count + 1.0;
+    return accepted(jumped.report.status) ? jumped : Reached{from, jumped.report};
   }
 
   // The tangent of the path here, the way the last step went.
   Linearization here(context, workspace, state, report.times);
-  const Corrector tangent{model, workspace, state, {}, 0.0};
   report.status = Status::singular;
   if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail))
-    return {state, report};
-  Increment change = tangent.rate_of_change(here, state, t0, report.times);
+    return {from, report};
+  Increment change = change_along(at, workspace, from, here, report.times);
   if (!change.reduced.ok) {
-    here.stiffen(kStiffer);
-    change = tangent.rate_of_change(here, state, t0, report.times);
+    here.stiffen();
+    change = change_along(at, workspace, from, here, report.times);
   }
-  if (!change.reduced.ok) return {state, report};
+  if (!change.reduced.ok) return {from, report};
   const Eigen::VectorXd u = measured(model, change);
   const double norm = std::sqrt(u.squaredNorm() + 1.0);
   const double way = state.path.rate == 0.0 || state.path.direction.dot(u) + state.path.rate > 0.0 ? 1.0 : -1.0;
-  const Corrector corrector{model, workspace, state, way / norm * u, way / norm};
+  const AcrossPath across{way / norm * u, way / norm};
 
-  const auto missed = [&state](const StepReport& made, double arc) {
-    return state.path.stable && made.unstable && arc > kArcAtBranch;
-  };
   for (double arc = std::min(state.path.step, kLongestArc); arc >= kShortestArc; arc *= 0.5) {
-    double t = t0 + arc * corrector.rate;
-    State iterate = state;
-    if (t >= 1.0) {  // land on the end
-      advance_by(context, change, 1.0 - t0, iterate);
-      StepResult last = land(model, workspace, state, iterate, 1.0);
-      report = last.report;
-      if (accepted(last.report.status) && !missed(last.report, arc)) {
-        last.next.time = duration;
-        last.next.grid = state.grid + 1;
-        return last;
-      }
-      continue;
+    const bool last = from.t + arc * across.rate >= 1.0;  // land on the end
+    const double dt = last ? 1.0 - from.t : arc * across.rate;
+    Iterate guess{state, from.t + dt};
+    advance_by(context, change, dt, guess.state);
+    NewtonRules rules = whole_steps(model);
+    if (!last) {
+      rules.limit = kMostIterations;
+      rules.across = &across;
     }
-    advance_by(context, change, arc * corrector.rate, iterate);
-    report = corrector.correct(iterate, t);
-    if (!accepted(report.status) || missed(report, arc)) continue;
-    iterate.time = t * duration;
-    iterate.path.step = std::min(
-        arc *
-            std::clamp(static_cast<double>(report.rotated ? 3 * kWantedIterations : kWantedIterations) / report.newton,
-                       0.5, 2.0),
-        kLongestArc);
-    iterate.path.count = state.path.count + 1.0;
-    iterate.path.stable = !report.unstable;
-    iterate.path.direction = corrector.direction;
-    iterate.path.rate = corrector.rate;
-    return {std::move(iterate), report};
+    Reached next = land(model, workspace, ramp, state, std::move(guess), rules);
+    report = next.report;
+    if (!accepted(report.status) || (state.path.stable && report.unstable && arc > kArcAtBranch)) continue;
+    PathState& path = next.at.state.path;
+    path.count = state.path.count + 1.0;
+    path.step =
+        std::min(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0), kLongestArc);
+    path.stable = !report.unstable;
+    path.direction = across.direction;
+    path.rate = across.rate;
+    return next;
   }
-  return {state, report};
+  return {from, report};
+}
+
+/// Counts the iterations and the time of a part of a step.
+void add_effort(const StepReport& part, StepReport& whole) {
+  whole.newton += part.newton;
+  for (double StageTimes::*stage : {&StageTimes::forces, &StageTimes::assembly, &StageTimes::factor,
+                                    &StageTimes::compliance, &StageTimes::rods, &StageTimes::solve})
+    whole.times.*stage += part.times.*stage;
+}
+
+}  // namespace
+
+StepResult static_step(const Model& model, Workspace& workspace, const State& state) {
+  const double duration = model.scene.time.duration;
+  const Ramp ramp{nothing(model), command_at(model, duration), Vec3::Zero(), model.scene.gravity, 0.0, duration};
+  Reached next = path_step(model, workspace, ramp, {state, state.time / duration});
+  if (!accepted(next.report.status)) return {state, next.report};
+  next.at.state.time = ramp.time(next.at.t);
+  if (next.at.t == 1.0) {
+    next.at.state.grid = state.grid + 1;
+  }
+  return {std::move(next.at.state), next.report};
+}
+
+StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
+                            double time) {
+  const bool begins = state.grid == 0 && state.time == 0.0;
+  Ramp ramp{nothing(model),      command,    begins ? Vec3(Vec3::Zero()) : model.scene.gravity,
+            model.scene.gravity, state.time, time};
+  if (!begins) {
+    const std::vector<double> positions = motor_positions(model, state);
+    for (std::size_t i = 0; i < model.actuators.size(); ++i)
+      ramp.from.actuators[i] = model.actuators[i].row < 0 ? state.actuators[i] : positions[i];
+    ramp.from.loads = state.loads;
+  }
+  const int folded = count_folded(model, state);
+  const auto sound = [&](const Reached& reached) {
+    return accepted(reached.report.status) && !reached.report.unstable &&
+           count_folded(model, reached.at.state) <= folded;
+  };
+  const auto guessed = [&](const State& from) {
+    const StepContext context = along(model, ramp, from)(1.0);
+    State guess = first_guess(context);
+    follow_points(context, guess);
+    return Iterate{std::move(guess), 1.0};
+  };
+
+  NewtonRules rules = whole_steps(model);
+  rules.limit = std::min(rules.limit, kMostIterations);
+  Reached end = land(model, workspace, ramp, state, guessed(state), rules);
+  StepReport spent = end.report;
+  if (!sound(end)) {
+    Iterate on{state, 0.0};
+    for (;;) {
+      Reached next = path_step(model, workspace, ramp, on);
+      add_effort(next.report, spent);
+      if (!sound(next) || next.at.t < on.t) break;
+      on = next.at;
+      if (on.t == 1.0) end = std::move(next);
+      if (on.t == 1.0) break;
+    }
+    if (on.t < 1.0) {
+      rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
+      Reached minimum = land(model, workspace, ramp, on.state, guessed(on.state), rules);
+      add_effort(minimum.report, spent);
+      if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
+    }
+  }
+  if (!accepted(end.report.status)) return {state, end.report};
+  end.at.state.path = {};
+  end.report.newton = spent.newton;
+  end.report.times = spent.times;
+  return {std::move(end.at.state), end.report};
 }
 
 }  // namespace sinew

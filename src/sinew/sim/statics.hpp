@@ -1,7 +1,7 @@
-// Statics: the equilibrium under the loads of the scene's end, followed from none.
+// Equilibria, followed from one to another.
 //
-// All loads, motors and gravity grow with one factor t from 0 to 1 (frames move to where they are at t times the
-// duration). Each step goes a certain arc along the path of equilibria (u, t),
+// All loads, motors and gravity grow with one factor t from 0 to 1, and frames move. Each step goes a certain arc along
+// the path of equilibria (u, t),
 //     |du|^2 + dt^2 = ds^2,       du in radians and in fractions of the scene's size,
 // predicted along the tangent K u' = -dr/dt and corrected by Newton in the plane across it, so the path is followed
 // past limit points, where t turns back.
@@ -11,8 +11,16 @@
 
 namespace sinew {
 
-/// One accepted step along the path from `state`, whose time is t times the duration. The last one lands on t = 1 and
-/// counts as the one step of the grid. On failure `next` is `state`.
+/// `static`: one accepted step along the path from nothing to all that is prescribed at the scene's end, from `state`,
+/// whose time is t times the duration. The last one lands on t = 1 and counts as the one step of the grid. On failure
+/// `next` is `state`.
 StepResult static_step(const Model& model, Workspace& workspace, const State& state);
+
+/// `quasi_static`: the equilibrium under what is prescribed at `time`, from that of `state` (from no loads at all where
+/// the run begins). Newton goes there at once; where it does not get there, or ends at an equilibrium that is unstable
+/// or inside out, it follows the path, and where the path turns back or gets unstable, it leaves it for the nearest
+/// minimum under all loads: the jump that a real body would make.
+StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
+                            double time);
 
 }  // namespace sinew

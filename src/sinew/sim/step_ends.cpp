@@ -99,7 +99,25 @@ double work_of(const SolidLoadModel& load, const StepContext& context, const Sta
   return 0.5 * force.cwiseProduct(to - from).sum();
 }
 
-/// Work of motors and loads over the step, by the mean of their forces at its ends.
+/// Work of what holds a solid where it is held to move, and of the frame that its springs pull at.
+double work_of_supports(const StepContext& context, const State& next, int number) {
+  const SolidModel& model = context.model.solids[number];
+  const SolidState &from = context.start.solids[number], &to = next.solids[number];
+  double sum = 0.0;
+  Eigen::Index held = 0;
+  for (Eigen::Index i = 0; i < to.x.size(); ++i) {
+    if (model.body.unknown(i) >= 0) continue;
+    sum += 0.5 * (from.reaction[held] + to.reaction[held]) * (to.x(i) - from.x(i));
+    ++held;
+  }
+  if (model.springs.size() == 0) return sum;
+  const Placement before = moved(context.model, context.start, model.frame), after = context.moved(model.frame);
+  const Eigen::Matrix3Xd drawn = 0.5 * (spring_stretch(model, before, from.x) + spring_stretch(model, after, to.x));
+  const Eigen::Matrix3Xd carried = ((after.R - before.R) * model.body.rest).colwise() + Vec3(after.p - before.p);
+  return sum - model.springs.cwiseProduct(drawn).cwiseProduct(carried).sum();
+}
+
+/// Work of motors, loads and supports over the step, by the mean of their forces at its ends.
 double work(const StepContext& context, const State& next) {
   const Model& model = context.model;
   double sum = 0.0;
@@ -119,6 +137,7 @@ double work(const StepContext& context, const State& next) {
     sum += std::visit([&](const auto& load) { return work_of(load, context, next, before_it, after_it); },
                       model.loads[i].on);
   }
+  for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
   return sum;
 }
 
@@ -191,15 +210,24 @@ const RodModel* exhausted(const Model& model, const State& state) {
   return nullptr;
 }
 
-std::string inside_out(const Model& model, const State& state) {
+int count_folded(const Model& model, const State& state) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.solids.size(); ++i)
+    count += solid::folded_cells(model.solids[i].body, state.solids[i].x).size();
+  return static_cast<int>(count);
+}
+
+std::string broken_cell(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const solid::Body& body = model.solids[i].body;
-    const int cell = solid::folded_cell(body, state.solids[i].x);
-    if (cell < 0) continue;
-    const Vec3 rest = body.at_nodes(cell, body.rest).rowwise().mean();
-    char text[160];
-    std::snprintf(text, sizeof text, "cell %d, at rest near (%.4g, %.4g, %.4g) m", cell, rest.x(), rest.y(), rest.z());
-    return "solids." + model.solids[i].name + ": " + text;
+    for (const int cell : solid::folded_cells(body, state.solids[i].x)) {
+      if (solid::invertible(body.of(cell).law)) continue;
+      const Vec3 rest = body.at_nodes(cell, body.rest).rowwise().mean();
+      char text[160];
+      std::snprintf(text, sizeof text, "cell %d, at rest near (%.4g, %.4g, %.4g) m", cell, rest.x(), rest.y(),
+                    rest.z());
+      return "solids." + model.solids[i].name + ": " + text;
+    }
   }
   return "";
 }

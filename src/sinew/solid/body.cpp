@@ -10,7 +10,8 @@ ElementRest Body::element(int cell) const {
   const auto e = static_cast<std::size_t>(cell);
   const int points = first_point[e + 1] - first_point[e];
   const double* gradient = gradients.data() + 3 * static_cast<std::ptrdiff_t>(first_gradient[e]);
-  return {Eigen::Map<const Eigen::Matrix3Xd>(gradient, 3, points * node_count(cells[e].kind)),
+  return {cells[e].kind,
+          Eigen::Map<const Eigen::Matrix3Xd>(gradient, 3, points * node_count(cells[e].kind)),
           {volumes.data() + first_point[e], static_cast<std::size_t>(points)}};
 }
 
@@ -114,18 +115,6 @@ Eigen::Matrix3Xd from_unknowns(const Body& body, const Eigen::Ref<const Eigen::V
   return nodal;
 }
 
-std::vector<Mat3> rotations(const Body& body, const Eigen::Matrix3Xd& x) {
-  std::vector<Mat3> R;
-  R.reserve(body.volumes.size());
-  for (int e = 0; e < body.elements(); ++e) {
-    const ElementRest rest = body.element(e);
-    const NodeVectors own = body.at_nodes(e, x);
-    for (std::size_t q = 0; q < rest.volumes.size(); ++q)
-      R.push_back(polar_rotation(deformation_gradient(rest, q, own)));
-  }
-  return R;
-}
-
 namespace {
 
 void scatter(const Body& body, int e, const NodeVectors& own, Eigen::Matrix3Xd& force) {
@@ -140,12 +129,6 @@ double largest_column(const Eigen::Matrix3Xd& columns) {
 bool viscous(const Body& body, int e) {
   const Lame& moduli = body.of(e).viscosity;
   return moduli.mu > 0.0 || moduli.lambda != 0.0;
-}
-
-std::span<const Mat3> frames(const Body& body, int e, const std::vector<Mat3>& rotation) {
-  const auto cell = static_cast<std::size_t>(e);
-  return {rotation.data() + body.first_point[cell],
-          static_cast<std::size_t>(body.first_point[cell + 1] - body.first_point[cell])};
 }
 
 }  // namespace
@@ -175,11 +158,13 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
   const Eigen::Matrix3Xd v = (x - start.x) * start.rate;
   const Eigen::Matrix3Xd elastic = elastic_force(body, x);
   Eigen::Matrix3Xd damping = Eigen::Matrix3Xd::Zero(3, body.nodes());
+  ElementResponse response;
   for (int e = 0; e < body.elements() && start.rate > 0.0; ++e) {
     if (!viscous(body, e)) continue;
-    scatter(body, e,
-            viscous_force(body.of(e).viscosity, body.element(e), frames(body, e, start.rotation), body.at_nodes(e, v)),
-            damping);
+    response.force.setZero(3, body.element(e).nodes());
+    add_viscosity(body.of(e).viscosity, start.rate, body.element(e), body.at_nodes(e, start.x), body.at_nodes(e, x),
+                  Derivatives::first, Tangent::exact, response);
+    scatter(body, e, response.force, damping);
   }
   const Eigen::Matrix3Xd inertia = ((v - start.v) * start.rate + body.damping_mass * v) * body.mass;
   const Eigen::Matrix3Xd weight = gravity * body.masses.transpose();
@@ -195,23 +180,26 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
   for (int e = 0; e < body.elements(); ++e) {
     evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::second, kind, response);
     if (start.rate > 0.0 && viscous(body, e))
-      add_viscous_stiffness(body.of(e).viscosity, start.rate, body.element(e), frames(body, e, start.rotation),
-                            response.stiffness);
+      add_viscosity(body.of(e).viscosity, start.rate, body.element(e), body.at_nodes(e, start.x), body.at_nodes(e, x),
+                    Derivatives::second, kind, response);
     insert(e, response.stiffness);
   }
 }
 
 double mass_factor(const Body& body, double rate) { return (rate + body.damping_mass) * rate; }
 
-int folded_cell(const Body& body, const Eigen::Matrix3Xd& x) {
+std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x) {
+  std::vector<int> folded;
   for (int e = 0; e < body.elements(); ++e) {
     const ElementRest rest = body.element(e);
     const NodeVectors own = body.at_nodes(e, x);
     for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
-      if (!(deformation_gradient(rest, q, own).determinant() > 0.0)) return e;
+      if (deformation_gradient(rest, q, own).determinant() > 0.0) continue;
+      folded.push_back(e);
+      break;
     }
   }
-  return -1;
+  return folded;
 }
 
 namespace {
@@ -223,15 +211,15 @@ Mat3 symmetric(const Mat3& m) { return 0.5 * (m + m.transpose()); }
 Mat3 cauchy_stress(const Body& body, int cell, const Eigen::Matrix3Xd& x) {
   const ElementRest rest = body.element(cell);
   const NodeVectors own = body.at_nodes(cell, x);
-  const double theta = mean_dilatation(body.of(cell).law, rest, own);
+  const ElementStress stress(body.of(cell).law, rest, own);
   Mat3 kirchhoff = Mat3::Zero();
   double now = 0.0;
   for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
     const Mat3 F = deformation_gradient(rest, q, own);
-    kirchhoff += rest.volumes[q] * stress(body.of(cell).law, F, theta) * F.transpose();
+    kirchhoff += rest.volumes[q] * stress(F) * F.transpose();
     now += rest.volumes[q] * F.determinant();
   }
-  return symmetric(kirchhoff / now);
+  return now > 0.0 ? symmetric(kirchhoff / now) : Mat3::Constant(NAN);
 }
 
 namespace {
@@ -244,10 +232,10 @@ Mat3 gradient_at(const Body& body, const EmbeddedPoint& point, const Eigen::Matr
 }  // namespace
 
 Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x) {
-  const Law& law = body.of(point.element).law;
-  const double theta = mean_dilatation(law, body.element(point.element), body.at_nodes(point.element, x));
+  const int cell = point.element;
   const Mat3 F = gradient_at(body, point, x);
-  return symmetric(cauchy_stress(stress(law, F, theta), F));
+  const ElementStress stress(body.of(cell).law, body.element(cell), body.at_nodes(cell, x));
+  return F.determinant() > 0.0 ? symmetric(cauchy_stress(stress(F), F)) : Mat3::Constant(NAN);
 }
 
 Mat3 green_strain(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x) {

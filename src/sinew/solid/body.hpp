@@ -59,14 +59,10 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
                std::vector<int> material, const Eigen::Array<bool, 3, Eigen::Dynamic>& held,
                MassMatrix kind = MassMatrix::lumped, std::optional<double> total = {});
 
-/// Polar rotations at all quadrature points.
-std::vector<Mat3> rotations(const Body& body, const Eigen::Matrix3Xd& x);
-
 /// What a time step needs to know about its start.
 struct StepStart {
-  Eigen::Matrix3Xd x, v;       ///< [m], [m/s] at the start
-  std::vector<Mat3> rotation;  ///< polar rotations there: the frames in which damping acts during the step
-  double rate = 0.0;           ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
+  Eigen::Matrix3Xd x, v;  ///< [m], [m/s] at the start
+  double rate = 0.0;      ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
 };
 
 /// Elastic force [N], 3 x n: dE/dx, so that it stands with a plus on the left of the equation of motion.
@@ -76,8 +72,8 @@ Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x);
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 
 /// Left minus right side of (7) under backward Euler, without loads and multipliers, 3 x n [N]:
-///     M (v - v_0) / h + a M v + f(x) + D_0 v - M g,      v = (x - x_0) / h,
-/// with Rayleigh's a and the viscous D_0 in the frames of the start of the step (symmetric, never gains energy).
+///     M (v - v_0) / h + a M v + f(x) + d(x, x_0) - M g,      v = (x - x_0) / h,
+/// with Rayleigh's a and the viscous forces d (`add_viscosity`).
 /// `scale` [N] receives the largest single contribution at any node: what the residual is measured against.
 Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
                           double* scale = nullptr);
@@ -85,7 +81,7 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
 /// Takes the matrix of one element, 3n x 3n.
 using InsertElement = std::function<void(int cell, const ElementMatrix& matrix)>;
 
-/// The matrix of (10) divided by h, A = M (1 + a h) / h^2 + D_0 / h + K(x), but for its mass, element by element.
+/// The matrix of (10) divided by h, A = M (1 + a h) / h^2 + d'(x) + K(x), but for its mass, element by element.
 /// mass_factor() times Body::mass is what is missing.
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
                       const InsertElement& insert);
@@ -93,11 +89,11 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
 /// (1 / h + a) / h.
 double mass_factor(const Body& body, double rate);
 
-/// A cell whose volume has vanished or turned inside out somewhere, -1 if there is none.
-int folded_cell(const Body& body, const Eigen::Matrix3Xd& x);
+/// Cells whose volume has vanished or turned inside out at one of their quadrature points.
+std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x);
 
 /// Cauchy stress sigma = P F^T / J [Pa] at a point, with the mean dilatation of its element; and the mean over the
-/// volume that a cell has now.
+/// volume that a cell has now. NaN where that volume is not positive.
 Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);
 Mat3 cauchy_stress(const Body& body, int cell, const Eigen::Matrix3Xd& x);
 /// Green-Lagrange strain (F^T F - I) / 2 at a point.

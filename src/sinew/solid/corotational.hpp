@@ -29,14 +29,14 @@ struct Corotational {
 
   Part shape(const Mat3& F, Derivatives wanted) const { return shape(F, exact_turning(F, wanted), wanted); }
   Part dilatation(const Mat3& F, Derivatives wanted) const { return dilatation(F, exact_turning(F, wanted), wanted); }
-  Volumetric volumetric(double v) const { return {0.5 * moduli.lambda * v * v, moduli.lambda * v, moduli.lambda}; }
+  Volumetric volumetric(double v) const { return quadratic(moduli.lambda, v); }
   Lame lame() const { return moduli; }
 
   /// Both at the cost of one.
   Parts parts(const Mat3& F, Derivatives wanted) const { return parts(F, exact_turning(F, wanted), wanted); }
   /// The same with R frozen in the second derivatives: linear elasticity in the frame R (R K R^T of the paper),
   /// positive semi-definite, exact at rest.
-  Parts rotated(const Mat3& F, Derivatives wanted) const { return parts(F, frozen_turning(F, wanted), wanted); }
+  Parts definite(const Mat3& F, Derivatives wanted) const { return parts(F, frozen_turning(F, wanted), wanted); }
 
   Part shape(const Mat3& F, const Turning& turning, Derivatives wanted) const;
   Part dilatation(const Mat3& F, const Turning& turning, Derivatives wanted) const;

@@ -1,13 +1,14 @@
 #include "sinew/solid/elasticity.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 namespace sinew::solid {
 
 namespace {
 
-using Vec30 = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMostNodes, 1>;
+using ElementVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMostNodes, 1>;
 
 /// Adds scale * B^T C B with dF = sum_a dx_a g_a^T.
 void add_contracted(const Mat9& C, double scale, const Eigen::Ref<const Eigen::Matrix3Xd>& g, ElementMatrix& K) {
@@ -23,119 +24,147 @@ void add_contracted(const Mat9& C, double scale, const Eigen::Ref<const Eigen::M
 
 void complete_upper(ElementMatrix& K) { K.triangularView<Eigen::StrictlyUpper>() = K.transpose(); }
 
+/// A law with a definite tangent of its own; others have theirs taken from the exact one.
+template <class L>
+concept OwnDefinite = requires(const L& law, const Mat3& F, Derivatives wanted) {
+  law.definite(F, wanted);
+};
+
 template <ConstitutiveLaw L>
 Parts parts_of(const L& law, const Mat3& F, Derivatives wanted, Tangent kind) {
-  if constexpr (requires { law.rotated(F, wanted); }) {
-    if (kind == Tangent::definite) return law.rotated(F, wanted);
+  if constexpr (OwnDefinite<L>) {
+    if (kind == Tangent::definite) return law.definite(F, wanted);
   }
   return parts(law, F, wanted);
 }
 
-template <ConstitutiveLaw L>
-void evaluate_by(const L& law, const ElementRest& rest, const NodeVectors& x, Derivatives wanted, Tangent kind,
-                 ElementResponse& response) {
-  const Eigen::Index n = rest.nodes();
+/// Adds an element's energy and what `wanted` asks for, of the stiffness what is on and below the diagonal. `law_at`
+/// has the law of a quadrature point; w and v may differ from point to point, U not.
+template <class LawAt>
+void add(const LawAt& law_at, const ElementRest& rest, const NodeVectors& x, Derivatives wanted, Tangent kind,
+         ElementResponse& response) {
+  using L = std::decay_t<decltype(law_at(0))>;
   const std::size_t points = rest.volumes.size();
+  const L& common = law_at(0);
+  const double share = pointwise_share(rest.kind, common.lame());
   std::array<Parts, kMostPoints> at;
-  double volume = 0.0, theta = 0.0;
-  response.energy = 0.0;
+  std::array<Volumetric, kMostPoints> U;
+  double volume = 0.0, theta = 0.0, energy = 0.0;
   for (std::size_t q = 0; q < points; ++q) {
-    at[q] = parts_of(law, deformation_gradient(rest, q, x), wanted, kind);
+    at[q] = parts_of<L>(law_at(q), deformation_gradient(rest, q, x), wanted, kind);
+    U[q] = common.volumetric(at[q].dilatation.value);
     volume += rest.volumes[q];
     theta += rest.volumes[q] * at[q].dilatation.value;
-    response.energy += rest.volumes[q] * at[q].shape.value;
+    energy += rest.volumes[q] * (at[q].shape.value + share * U[q].value);
   }
   theta /= volume;
-  const Volumetric U = law.volumetric(theta);
-  response.energy += volume * U.value;
+  const Volumetric mean = common.volumetric(theta);
+  response.energy += energy + (1.0 - share) * volume * mean.value;
   if (wanted == Derivatives::none) return;
   if (!std::isfinite(response.energy)) {  // beyond where the law ends
-    response.force.setConstant(3, n, INFINITY);
-    response.stiffness.setZero(3 * n, 3 * n);
+    response.force.setConstant(INFINITY);
     return;
   }
 
-  response.force.setZero(3, n);
+  const auto pressure = [&](std::size_t q) { return share * U[q].first + (1.0 - share) * mean.first; };
   for (std::size_t q = 0; q < points; ++q)
     response.force.noalias() +=
-        rest.volumes[q] * (at[q].shape.first + U.first * at[q].dilatation.first) * rest.gradients_at(q);
+        rest.volumes[q] * (at[q].shape.first + pressure(q) * at[q].dilatation.first) * rest.gradients_at(q);
   if (wanted == Derivatives::first) return;
 
-  ElementMatrix& K = response.stiffness;
-  K.setZero(3 * n, 3 * n);
-  NodeVectors slope = NodeVectors::Zero(3, n);  // d theta / dx
-  constexpr bool kRotated = requires(const Mat3& F) { law.rotated(F, wanted); };
+  NodeVectors slope = NodeVectors::Zero(3, rest.nodes());  // d theta / dx
   for (std::size_t q = 0; q < points; ++q) {
-    Mat9 C = at[q].shape.second + U.first * at[q].dilatation.second;
-    if (kind == Tangent::definite && !kRotated) C = positive_semidefinite(C);
-    add_contracted(C, rest.volumes[q], rest.gradients_at(q), K);
-    slope.noalias() += rest.volumes[q] / volume * at[q].dilatation.first * rest.gradients_at(q);
+    const Part& v = at[q].dilatation;
+    const Vec9 d = v.first.reshaped();
+    Mat9 C = at[q].shape.second + pressure(q) * v.second;
+    C.noalias() += (share * U[q].second * d) * d.transpose();
+    if (kind == Tangent::definite && !OwnDefinite<L>) C = positive_semidefinite(C);
+    add_contracted(C, rest.volumes[q], rest.gradients_at(q), response.stiffness);
+    slope.noalias() += rest.volumes[q] / volume * v.first * rest.gradients_at(q);
   }
-  const Vec30 g = slope.reshaped();
-  K.noalias() += volume * U.second * g * g.transpose();
-  complete_upper(K);
+  if (share == 1.0) return;
+  const ElementVector g = slope.reshaped();
+  response.stiffness.noalias() += (1.0 - share) * volume * mean.second * g * g.transpose();
+}
+
+/// Saint Venant-Kirchhoff's law for what a step has changed of the strain. Its definite tangent is the one without
+/// stress: viscous stress is small where steps are.
+struct Viscosity {
+  static constexpr bool kInvertible = true;
+  SaintVenantKirchhoff law;
+  Mat3 dE;  ///< E - E_0 where it is asked for
+
+  Part shape(const Mat3& F, Derivatives wanted) const { return law.shape(F, dE, wanted); }
+  Part dilatation(const Mat3& F, Derivatives wanted) const { return law.dilatation(F, dE, wanted); }
+  Volumetric volumetric(double v) const { return law.volumetric(v); }
+  Lame lame() const { return law.moduli; }
+
+  Parts definite(const Mat3& F, Derivatives wanted) const {
+    Parts both = {shape(F, wanted), dilatation(F, wanted)};
+    if (wanted != Derivatives::second) return both;
+    both.shape.second = law.shape(F, Mat3::Zero(), wanted).second;
+    both.dilatation.second.setZero();
+    return both;
+  }
+};
+
+void reset(ElementResponse& response, Eigen::Index nodes, Derivatives wanted) {
+  response.energy = 0.0;
+  if (wanted != Derivatives::none) response.force.setZero(3, nodes);
+  if (wanted == Derivatives::second) response.stiffness.setZero(3 * nodes, 3 * nodes);
 }
 
 }  // namespace
 
+double pointwise_share(Kind kind, const Lame& moduli) {
+  constexpr double kSoft = 1.5;  // lambda / mu at a Poisson's ratio of 0.3
+  if (kind == Kind::tet4 || moduli.lambda <= 0.0) return 1.0;
+  return kind == Kind::tet10 ? std::min(1.0, kSoft * moduli.mu / moduli.lambda) : 0.0;
+}
+
 void evaluate(const Law& law, const ElementRest& rest, const NodeVectors& x, Derivatives wanted, Tangent kind,
               ElementResponse& response) {
-  std::visit([&](const auto& own) { evaluate_by(own, rest, x, wanted, kind, response); }, law);
+  reset(response, rest.nodes(), wanted);
+  std::visit(
+      [&](const auto& own) {
+        add(
+            [&own](std::size_t) -> const auto& { return own; }, rest, x, wanted, kind, response);
+      },
+      law);
+  if (wanted == Derivatives::second) complete_upper(response.stiffness);
+}
+
+void add_viscosity(const Lame& moduli, double rate, const ElementRest& rest, const NodeVectors& x0,
+                   const NodeVectors& x, Derivatives wanted, Tangent kind, ElementResponse& response) {
+  const SaintVenantKirchhoff law{0.0, 0.0, {rate * moduli.mu, rate * moduli.lambda}};
+  const NodeVectors dx = x - x0;
+  const auto law_at = [&](std::size_t q) {  // from the motion, so that small steps keep their digits
+    const Mat3 dF = deformation_gradient(rest, q, dx), F = deformation_gradient(rest, q, x0) + 0.5 * dF;
+    return Viscosity{law, 0.5 * (F.transpose() * dF + dF.transpose() * F)};
+  };
+  add(law_at, rest, x, wanted, kind, response);
+  if (wanted == Derivatives::second) complete_upper(response.stiffness);
 }
 
 Mat3 deformation_gradient(const ElementRest& rest, std::size_t q, const NodeVectors& x) {
   return x * rest.gradients_at(q).transpose();
 }
 
-double mean_dilatation(const Law& law, const ElementRest& rest, const NodeVectors& x) {
+ElementStress::ElementStress(const Law& law, const ElementRest& rest, const NodeVectors& x)
+    : law_(law), share_(pointwise_share(rest.kind, lame(law))) {
+  if (share_ == 1.0) return;
   double volume = 0.0, theta = 0.0;
   for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
-    const Parts at = parts(law, deformation_gradient(rest, q, x), Derivatives::none);
     volume += rest.volumes[q];
-    theta += rest.volumes[q] * at.dilatation.value;
+    theta += rest.volumes[q] * dilatation(law, deformation_gradient(rest, q, x));
   }
-  return theta / volume;
+  mean_ = volumetric(law, theta / volume).first;
 }
 
-Mat3 stress(const Law& law, const Mat3& F, double theta) {
-  const Parts at = parts(law, F, Derivatives::first);
-  return at.shape.first + volumetric(law, theta).first * at.dilatation.first;
-}
-
-NodeVectors viscous_force(const Lame& moduli, const ElementRest& rest, std::span<const Mat3> R, const NodeVectors& v) {
-  double volume = 0.0, dilation = 0.0;
-  NodeVectors force = NodeVectors::Zero(3, rest.nodes()), slope = force;
-  for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
-    const auto g = rest.gradients_at(q);
-    const Mat3 rate = R[q].transpose() * deformation_gradient(rest, q, v);
-    volume += rest.volumes[q];
-    dilation += rest.volumes[q] * rate.trace();
-    force.noalias() += rest.volumes[q] * moduli.mu * (R[q] * (rate + rate.transpose())) * g;
-    slope.noalias() += rest.volumes[q] * R[q] * g;
-  }
-  return force + moduli.lambda * dilation / volume * slope;
-}
-
-void add_viscous_stiffness(const Lame& moduli, double rate, const ElementRest& rest, std::span<const Mat3> R,
-                           ElementMatrix& stiffness) {
-  const Eigen::Index n = rest.nodes();
-  double volume = 0.0;
-  NodeVectors slope = NodeVectors::Zero(3, n);
-  for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
-    const NodeVectors b = R[q] * rest.gradients_at(q);
-    const double factor = rate * rest.volumes[q] * moduli.mu;
-    volume += rest.volumes[q];
-    slope += rest.volumes[q] * b;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        auto block = stiffness.block<3, 3>(3 * i, 3 * j);
-        block.noalias() += factor * b.col(j) * b.col(i).transpose();
-        block.diagonal().array() += factor * b.col(i).dot(b.col(j));
-      }
-    }
-  }
-  const Vec30 g = slope.reshaped();
-  stiffness.noalias() += rate * moduli.lambda / volume * g * g.transpose();
+Mat3 ElementStress::operator()(const Mat3& F) const {
+  const Parts at = parts(law_, F, Derivatives::first);
+  const double pressure = share_ * volumetric(law_, at.dilatation.value).first + (1.0 - share_) * mean_;
+  return at.shape.first + pressure * at.dilatation.first;
 }
 
 }  // namespace sinew::solid

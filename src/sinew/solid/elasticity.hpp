@@ -1,9 +1,9 @@
 // Elastic energy, forces and stiffness of one element of any kind and law.
 //
 // With w_q the volumes of its quadrature points, V their sum and psi = w(F) + U(v(F)) its law,
-//     E = sum_q w_q w(F_q) + V U(theta),      theta = 1/V sum_q w_q v(F_q),
-// so the dilatation enters by its mean over the element, which is what keeps elements of many points from locking
-// where U is stiff. With one point it is the plain law.
+//     E = sum_q w_q (w(F_q) + b U(v(F_q))) + (1 - b) V U(theta),      theta = 1/V sum_q w_q v(F_q),
+// so a share 1 - b of U acts on the mean dilatation of the element, which is what keeps elements of many points from
+// locking where U is stiff. With one point it is the plain law.
 #pragma once
 
 #include <span>
@@ -15,9 +15,10 @@ namespace sinew::solid {
 /// What an element is at rest: shape function gradients at each quadrature point [1/m], node_count columns a point, and
 /// the points' volumes [m^3].
 struct ElementRest {
+  Kind kind;
   Eigen::Map<const Eigen::Matrix3Xd> gradients;
   std::span<const double> volumes;
-  Eigen::Index nodes() const { return gradients.cols() / static_cast<Eigen::Index>(volumes.size()); }
+  Eigen::Index nodes() const { return node_count(kind); }
   auto gradients_at(std::size_t q) const {
     return gradients.middleCols(static_cast<Eigen::Index>(q) * nodes(), nodes());
   }
@@ -36,23 +37,34 @@ struct ElementResponse {
   ElementMatrix stiffness;  ///< d2E/dx2 [N/m]
 };
 
+/// The share b of U that acts at each point rather than on the mean: all of it in elements of one point, and where U is
+/// soft; of 10-node tetrahedra a part that is as stiff as U of a material of Poisson's ratio 0.3 (README).
+double pointwise_share(Kind kind, const Lame& moduli);
+
 /// Nodes at x. Fills what `wanted` asks for.
 void evaluate(const Law& law, const ElementRest& rest, const NodeVectors& x, Derivatives wanted, Tangent kind,
               ElementResponse& response);
 
+/// Adds Kelvin-Voigt damping of a step of backward Euler, by the Green strains E_0 at its start, nodes at x0: the
+/// potential, with moduli in [Pa s] and rate = 1/h,
+///     rate sum_q w_q (mu |E - E_0|^2 + lambda / 2 tr^2 (E - E_0)),
+/// its dilatation shared out like U above. Rigid motion of any speed and size leaves it alone, and since it is never
+/// negative, a step that minimises it with the rest never gains energy.
+void add_viscosity(const Lame& moduli, double rate, const ElementRest& rest, const NodeVectors& x0,
+                   const NodeVectors& x, Derivatives wanted, Tangent kind, ElementResponse& response);
+
 /// F at a quadrature point.
 Mat3 deformation_gradient(const ElementRest& rest, std::size_t q, const NodeVectors& x);
 
-/// theta of an element.
-double mean_dilatation(const Law& law, const ElementRest& rest, const NodeVectors& x);
-/// First Piola-Kirchhoff stress [Pa] where the deformation gradient is F, in an element of mean dilatation theta.
-Mat3 stress(const Law& law, const Mat3& F, double theta);
+/// First Piola-Kirchhoff stress [Pa] of a law in an element, nodes at x, where the deformation gradient is F.
+class ElementStress {
+ public:
+  ElementStress(const Law& law, const ElementRest& rest, const NodeVectors& x);
+  Mat3 operator()(const Mat3& F) const;
 
-/// Forces and stiffness of viscosity in frames R that stay, one per quadrature point: linear, K v with
-///     K = sum_q w_q (2 mu |sym R^T Fdot|^2)'' + lambda / V g g^T,   g = sum_q w_q d(R : F_q)/dx,
-/// symmetric and positive semi-definite. Moduli in [Pa s].
-NodeVectors viscous_force(const Lame& moduli, const ElementRest& rest, std::span<const Mat3> R, const NodeVectors& v);
-void add_viscous_stiffness(const Lame& moduli, double rate, const ElementRest& rest, std::span<const Mat3> R,
-                           ElementMatrix& stiffness);
+ private:
+  const Law& law_;
+  double share_ = 1.0, mean_ = 0.0;  ///< b, and U' of the mean dilatation
+};
 
 }  // namespace sinew::solid

@@ -43,6 +43,20 @@ inline Part determinant(const Mat3& F, Derivatives wanted) {
   return J;
 }
 
+/// w += first (J - 1) + second / 2 (J - 1)^2.
+inline void add_dilatation(const Mat3& F, double first, double second, Derivatives wanted, Part& w) {
+  const Part J = determinant(F, wanted == Derivatives::none ? wanted : Derivatives::first);
+  const double e = J.value - 1.0;
+  w.value += (first + 0.5 * second * e) * e;
+  if (wanted == Derivatives::none) return;
+  const double slope = first + second * e;
+  w.first += slope * J.first;
+  if (wanted == Derivatives::first) return;
+  const Vec9 cof = J.first.reshaped();
+  w.second += (second * cof) * cof.transpose();
+  add_determinant_second(F, slope, w.second);
+}
+
 /// log J for J > 0. Near rest from the strain, J^2 = det(I + 2 E): its error is a fraction of the strain, not of 1.
 inline double log_determinant(const Mat3& E, double J) {
   const double e1 = E.trace(), e2 = 0.5 * (e1 * e1 - E.squaredNorm());

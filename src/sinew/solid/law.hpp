@@ -29,6 +29,11 @@ struct Volumetric {
   double value = 0.0, first = 0.0, second = 0.0;
 };
 
+/// stiffness / 2 e^2 of a distance e from rest.
+constexpr Volumetric quadratic(double stiffness, double e) {
+  return {0.5 * stiffness * e * e, stiffness * e, stiffness};
+}
+
 /// w and v of one F.
 struct Parts {
   Part shape, dilatation;

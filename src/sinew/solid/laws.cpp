@@ -13,6 +13,10 @@ Part density(const Law& law, const Mat3& F, Derivatives wanted) {
   return std::visit([&](const auto& l) { return density(l, F, wanted); }, law);
 }
 
+double dilatation(const Law& law, const Mat3& F) {
+  return std::visit([&](const auto& l) { return l.dilatation(F, Derivatives::none).value; }, law);
+}
+
 Volumetric volumetric(const Law& law, double v) {
   return std::visit([&](const auto& l) { return l.volumetric(v); }, law);
 }

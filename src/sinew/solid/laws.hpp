@@ -48,6 +48,7 @@ Part density(const L& law, const Mat3& F, Derivatives wanted) {
 
 Parts parts(const Law& law, const Mat3& F, Derivatives wanted);
 Part density(const Law& law, const Mat3& F, Derivatives wanted);
+double dilatation(const Law& law, const Mat3& F);
 Volumetric volumetric(const Law& law, double v);
 Lame lame(const Law& law);
 bool invertible(const Law& law);

@@ -22,25 +22,21 @@ struct NeoHookean {
 
   Part shape(const Mat3& F, Derivatives wanted) const {
     Part w;
-    const double mu = 4.0 / 3.0 * moduli.mu, stiff = 5.0 / 6.0 * moduli.mu;
-    const double I = F.squaredNorm(), share = 1.0 / (I + 1.0);
-    const Part J = determinant(F, wanted == Derivatives::none ? wanted : Derivatives::first);
-    const double e = J.value - 1.0, slope = stiff * e - 0.75 * mu;
-    w.value = 0.5 * mu * (I - 3.0 - std::log1p(0.25 * (I - 3.0))) + (0.5 * stiff * e - 0.75 * mu) * e;
-    if (wanted == Derivatives::none) return w;
-    w.first = mu * (1.0 - share) * F + slope * J.first;
-    if (wanted == Derivatives::first) return w;
-    const Vec9 f = F.reshaped(), cof = J.first.reshaped();
-    w.second = (2.0 * mu * share * share * f) * f.transpose() + (stiff * cof) * cof.transpose();
-    w.second.diagonal().array() += mu * (1.0 - share);
-    add_determinant_second(F, slope, w.second);
+    const double mu = 4.0 / 3.0 * moduli.mu;
+    const double I = F.squaredNorm(), part = 1.0 / (I + 1.0);
+    w.value = 0.5 * mu * (I - 3.0 - std::log1p(0.25 * (I - 3.0)));
+    if (wanted != Derivatives::none) w.first = mu * (1.0 - part) * F;
+    if (wanted == Derivatives::second) {
+      const Vec9 f = F.reshaped();
+      w.second = (2.0 * mu * part * part * f) * f.transpose();
+      w.second.diagonal().array() += mu * (1.0 - part);
+    }
+    add_dilatation(F, -0.75 * mu, 5.0 / 6.0 * moduli.mu, wanted, w);
     return w;
   }
 
   Part dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
-  Volumetric volumetric(double v) const {
-    return {0.5 * moduli.lambda * (v - 1.0) * (v - 1.0), moduli.lambda * (v - 1.0), moduli.lambda};
-  }
+  Volumetric volumetric(double v) const { return quadratic(moduli.lambda, v - 1.0); }
   Lame lame() const { return moduli; }
 };
 

@@ -9,11 +9,12 @@ namespace sinew::solid {
 Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given) {
   assert(terms.size() <= static_cast<std::size_t>(Ogden::kMostTerms));
   Ogden law;
+  double shear = 0.0;
   for (const OgdenTerm& term : terms) {
     law.terms[law.count++] = term;
-    law.shear += 0.5 * term.mu * term.alpha;
+    shear += 0.5 * term.mu * term.alpha;
   }
-  law.bulk = bulk_modulus(law.shear, given);
+  law.moduli = lame_from_bulk(shear, bulk_modulus(shear, given));
   return law;
 }
 
@@ -43,13 +44,19 @@ Principal principal(const Mat3& F) {
   return {A * stretch.cwiseInverse().asDiagonal(), V, stretch};
 }
 
+Part Ogden::shape(const Mat3& F, Derivatives wanted) const {
+  Part w = isochoric(F, wanted);
+  if (std::isfinite(w.value)) add_dilatation(F, 0.0, 2.0 / 3.0 * moduli.mu, wanted, w);
+  return w;
+}
+
 // With x_i = log l_i and b_i = exp(alpha (x_i - mean x)): f_i = dw/dl_i = s_i / l_i, s_i = sum mu (b_i - mean b).
 // In the principal frame the second derivative is d f_i / d l_j on the diagonal strains and, for each pair of axes,
 //     (f_i - f_j) / (l_i - l_j) on (u_i v_j^T + u_j v_i^T) / sqrt 2,
 //     (f_i + f_j) / (l_i + l_j) on (u_i v_j^T - u_j v_i^T) / sqrt 2.
 // The first without a difference of near numbers:
 //     (b_i - b_j) / (l_i - l_j) = sqrt(b_i b_j / (l_i l_j)) sinh(alpha h) / sinh h,   h = (x_i - x_j) / 2.
-Part Ogden::shape(const Mat3& F, Derivatives wanted) const {
+Part Ogden::isochoric(const Mat3& F, Derivatives wanted) const {
   Part w;
   if (!(F.determinant() > 0.0)) {
     w.value = std::numeric_limits<double>::infinity();

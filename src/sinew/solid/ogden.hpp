@@ -1,6 +1,7 @@
 // Ogden (Ogden, Non-linear Elastic Deformations, 7.2; Holzapfel, Nonlinear Solid Mechanics, 6.5): in the principal
 // stretches l_i of F, made isochoric,
-//     w = sum_p mu_p / alpha_p (sum_i (J^(-1/3) l_i)^alpha_p - 3),   v = J,   U = K / 2 (v - 1)^2.
+//     psi = sum_p mu_p / alpha_p (sum_i (J^(-1/3) l_i)^alpha_p - 3) + K / 2 (J - 1)^2,
+// of which U = lambda / 2 (v - 1)^2, v = J, lambda = K - 2/3 mu, and w is the rest (README).
 // Shear modulus at rest: sum mu_p alpha_p / 2. One pair (mu, 2) is neo-Hookean, two (2 c10, 2), (-2 c01, -2) are
 // Mooney-Rivlin.
 #pragma once
@@ -24,13 +25,15 @@ struct Ogden {
   static constexpr int kMostTerms = 6;
   std::array<OgdenTerm, kMostTerms> terms{};
   int count = 0;
-  double bulk = 0.0;   ///< K [Pa]
-  double shear = 0.0;  ///< at rest [Pa]
+  Lame moduli;  ///< at rest
 
   Part shape(const Mat3& F, Derivatives wanted) const;
   Part dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
-  Volumetric volumetric(double v) const { return {0.5 * bulk * (v - 1.0) * (v - 1.0), bulk * (v - 1.0), bulk}; }
-  Lame lame() const { return lame_from_bulk(shear, bulk); }
+  Volumetric volumetric(double v) const { return quadratic(moduli.lambda, v - 1.0); }
+  Lame lame() const { return moduli; }
+
+ private:
+  Part isochoric(const Mat3& F, Derivatives wanted) const;
 };
 
 /// From at most kMostTerms terms.

@@ -15,9 +15,12 @@ struct SaintVenantKirchhoff {
   double poisson = 0.0;  ///< [-]
   Lame moduli;
 
-  Part shape(const Mat3& F, Derivatives wanted) const {
+  Part shape(const Mat3& F, Derivatives wanted) const { return shape(F, green_strain(F), wanted); }
+  Part dilatation(const Mat3& F, Derivatives wanted) const { return dilatation(F, green_strain(F), wanted); }
+
+  /// The same where E differs from F's strain by a constant.
+  Part shape(const Mat3& F, const Mat3& E, Derivatives wanted) const {
     Part w;
-    const Mat3 E = green_strain(F);
     w.value = moduli.mu * E.squaredNorm();
     if (wanted == Derivatives::none) return w;
     w.first = 2.0 * moduli.mu * F * E;
@@ -35,15 +38,15 @@ struct SaintVenantKirchhoff {
     return w;
   }
 
-  Part dilatation(const Mat3& F, Derivatives wanted) const {
+  Part dilatation(const Mat3& F, const Mat3& E, Derivatives wanted) const {
     Part v;
-    v.value = green_strain(F).trace();
+    v.value = E.trace();
     if (wanted != Derivatives::none) v.first = F;
     if (wanted == Derivatives::second) v.second.setIdentity();
     return v;
   }
 
-  Volumetric volumetric(double v) const { return {0.5 * moduli.lambda * v * v, moduli.lambda * v, moduli.lambda}; }
+  Volumetric volumetric(double v) const { return quadratic(moduli.lambda, v); }
   Lame lame() const { return moduli; }
 };
 

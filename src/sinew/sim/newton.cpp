@@ -1,0 +1,184 @@
+#include "sinew/sim/newton.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "sinew/sim/step_ends.hpp"
+
+namespace sinew {
+
+namespace {
+
+/// Halves the last increment while it leads where a law ends (an element turned inside out), and that of a static
+/// equilibrium while the unbalanced force grows. Motion of rows is not judged: a motor that has moved must load the
+/// rods before anything can be balanced.
+class LineSearch {
+ public:
+  void take(const State& from, const Increment& increment, double fraction, const Linearization& there) {
+    from_ = from;
+    increment_ = increment;
+    fraction_ = fraction;
+    force_ = there.largest();
+    judged_ = there.violation();
+    halvings_ = 0;
+  }
+  bool too_far(const StepContext& context, const Linearization& here) const {
+    constexpr int kMostHalvings = 4, kMostRescues = 12;
+    if (from_ && !here.finite()) return halvings_ < kMostRescues;
+    return context.rate == 0.0 && from_ && judged_ <= 1e-6 * context.model.size && halvings_ < kMostHalvings &&
+           !(here.largest() <= force_) && here.largest() > 1e-6 * here.scale();
+  }
+  State shortened(const StepContext& context) {
+    State state = *from_;
+    fraction_ *= 0.5;
+    ++halvings_;
+    advance_by(context, increment_, fraction_, state);
+    return state;
+  }
+
+ private:
+  std::optional<State> from_;
+  Increment increment_;
+  double fraction_ = 1.0, force_ = 0.0, judged_ = 0.0;
+  int halvings_ = 0;
+};
+
+/// a <- (a - b) factor.
+void scale_difference(Increment& a, const Increment& b, double factor) {
+  for (std::size_t i = 0; i < a.dx.size(); ++i) a.dx[i] = (a.dx[i] - b.dx[i]) * factor;
+  a.reduced.dz = (a.reduced.dz - b.reduced.dz) * factor;
+  a.reduced.dlambda = (a.reduced.dlambda - b.reduced.dlambda) * factor;
+  for (std::size_t i = 0; i < a.reduced.dq.size(); ++i) a.reduced.dq[i] = (a.reduced.dq[i] - b.reduced.dq[i]) * factor;
+}
+
+/// What an accepted iterate must be, beyond balanced.
+void judge(const StepContext& context, bool fixed, const State& state, StepReport& report) {
+  if (!finite(state)) {
+    report.status = Status::diverged;
+    report.detail = "the new state is not finite";
+  } else if (!fixed && turned_over(context, state)) {
+    report.status = Status::max_iterations;
+    report.detail = "a tie turned over";
+  } else if (const RodModel* rod = exhausted(context.model, state)) {
+    report.status = Status::rod_exhausted;
+    report.detail = "rods." + rod->name;
+  } else {
+    report.status = fixed ? Status::linearized : Status::converged;
+    report.detail.clear();
+  }
+}
+
+}  // namespace
+
+Eigen::VectorXd measured(const Model& model, const Increment& increment) {
+  Eigen::Index size = increment.reduced.dz.size();
+  for (const auto& dx : increment.dx) size += dx.size();
+  for (const auto& dq : increment.reduced.dq) size += dq.size();
+  Eigen::VectorXd u(size);
+  Eigen::Index at = 0;
+  for (const auto& dx : increment.dx) {
+    u.segment(at, dx.size()) = dx.reshaped() / (model.size * std::sqrt(static_cast<double>(dx.cols())));
+    at += dx.size();
+  }
+  for (std::size_t n = 0; n < model.rods.size(); ++n) {
+    const rod::Rod& rod = model.rods[n].rod;
+    for (int i = 0; i < rod.count(); ++i) {
+      // A section's turn counts by its share of the rod, so that the measure does not depend on their number.
+      const double weight = std::sqrt(rod.sections[i].length() * rod.length());
+      for (int c = rod.first[i]; c < rod.first[i + 1]; ++c) u[at + c] = weight * increment.reduced.dq[n][c];
+    }
+    at += rod.strain_coordinates();
+  }
+  u.tail(increment.reduced.dz.size()) = increment.reduced.dz / model.size;
+  for (const RodModel& rod : model.rods) {
+    for (int i = 0; i < rod.rod.base_coordinates(); ++i) {
+      if (rod.rod.base[i].turns) u[at + rod.unknown + i] *= model.size;
+    }
+  }
+  return u;
+}
+
+// By a difference in t, exact where all loads are linear in it.
+Increment change_along(const ContextAt& at, Workspace& workspace, const Iterate& iterate, Linearization& here,
+                       StageTimes& times) {
+  const double e = 1e-6;
+  const StepContext ahead = at(iterate.t + e);
+  State carried = iterate.state;
+  place_held(ahead, carried);
+  const Linearization there(ahead, workspace, carried, times);
+  Increment change = here.solve(there);
+  const Increment own = here.solve();
+  if (!own.reduced.ok) change.reduced.ok = false;
+  if (change.reduced.ok) scale_difference(change, own, 1.0 / e);
+  return change;
+}
+
+StepReport newton(const ContextAt& at, Workspace& workspace, const NewtonRules& rules, Iterate& iterate) {
+  const bool descent = rules.wanted == Linearization::Wanted::descent && !rules.fixed;
+  StepReport report;
+  LineSearch search;
+  std::optional<StepContext> context;
+  double stiffness = 0.0;
+  const auto fail = [&report](Status status, std::string detail) {
+    report.status = status;
+    report.detail = std::move(detail);
+    return report;
+  };
+  for (;; ++report.newton) {
+    if (!context || rules.across) {
+      context.emplace(at(iterate.t));
+      place_held(*context, iterate.state);
+      stiffness = std::max(stiffness, inertia_of(*context));
+    }
+    context->first_guess = report.newton == 0 && context->rate > 0.0 && !rules.fixed;
+    auto evaluated = std::make_unique<Linearization>(*context, workspace, iterate.state, report.times);
+    while (search.too_far(*context, *evaluated)) {
+      iterate.state = search.shortened(*context);
+      evaluated = std::make_unique<Linearization>(*context, workspace, iterate.state, report.times);
+    }
+    Linearization& here = *evaluated;
+    report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
+    report.violation = here.violation();
+    if (!here.finite() || !std::isfinite(iterate.t)) {
+      const std::string where = broken_cell(context->model, iterate.state);
+      return where.empty() ? fail(Status::diverged, "forces are not finite") : fail(Status::inverted, where);
+    }
+    if (rules.fixed ? report.newton == rules.limit : report.newton > 0 && balanced(context->model, here, stiffness)) {
+      finish(*context, here, iterate.state);
+      judge(*context, rules.fixed, iterate.state, report);
+      return report;
+    }
+    if (!rules.fixed && report.newton == rules.limit) return fail(Status::max_iterations, "");
+    std::string failed;
+    if (!here.factor(rules.fixed ? solid::Tangent::definite : solid::Tangent::exact, rules.wanted, failed))
+      return fail(Status::singular, failed);
+    report.rotated |= here.rotated();
+    if (context->rate == 0.0) report.unstable = here.unstable();
+    stiffness = std::max(stiffness, here.stiffness());
+    Increment increment = here.solve();
+    if (!increment.reduced.ok && !descent && !rules.fixed) {
+      here.stiffen();
+      increment = here.solve();
+    }
+    report.redundant |= increment.reduced.redundant;
+    if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
+    if (rules.across) {
+      const Increment change = change_along(at, workspace, iterate, here, report.times);
+      if (!change.reduced.ok) return fail(Status::singular, "constraint rows and rods");
+      const Eigen::VectorXd& n = rules.across->direction;
+      const Model& model = context->model;
+      const double dt = -n.dot(measured(model, increment)) / (n.dot(measured(model, change)) + rules.across->rate);
+      advance_by(*context, change, dt, iterate.state);
+      advance_by(*context, increment, 1.0, iterate.state);
+      iterate.t += dt;
+      continue;
+    }
+    const double fraction = rules.fixed ? 1.0 : trusted_fraction(*context, increment);
+    if (descent) search.take(iterate.state, increment, fraction, here);
+    advance_by(*context, increment, fraction, iterate.state);
+  }
+}
+
+}  // namespace sinew
