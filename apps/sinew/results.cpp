@@ -122,6 +122,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["summary"]["limit_points"] = limit_points(recording, loaded.model.scene.time.duration);
   if (!summary.times.empty()) {
     report["summary"]["steps_with_rotated_tangent"] = summary.rotated;
+    report["summary"]["most_inverted_elements"] = summary.most_inverted;
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;
     report["time_per_step"] = {{"forces", stage_json(summary.times, &StageTimes::forces)},
                                {"assembly", stage_json(summary.times, &StageTimes::assembly)},

@@ -7,6 +7,7 @@
 #include "sinew/error/input_error.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/results.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"
@@ -91,6 +92,7 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
         summary.rotated += report.rotated ? 1 : 0;
         summary.redundant += report.redundant ? 1 : 0;
         unstable = report.unstable;
+        summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
         last = state;
         progress.update(state.time, when(model, state));
         return !interrupted.load();
@@ -101,9 +103,14 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   std::vector<std::string> warnings = warnings_of(model, last);
   if (unstable) {
     warnings.push_back(
-        "the last equilibrium is unstable, a real rod would have buckled; a small side load or shorter steps show "
-        "where "
-        "it goes");
+        "the last equilibrium is unstable, a real body would have buckled; a small side load or shorter steps show "
+        "where it goes");
+  }
+  if (summary.most_inverted > 0) {
+    warnings.push_back(fmt::format(
+        "up to {} elements were flat or inside out ({} at the end): this is no state of a real body. Look at "
+        "volume_ratio in ParaView; load it less or slower, or give a finer mesh or another law",
+        summary.most_inverted, count_folded(model, last)));
   }
   for (const std::string& warning : warnings) {
     summary.warnings.push_back(warning);

@@ -174,7 +174,7 @@ TEST(Vtu, rod_has_all_its_numbers) {
     expect_values(r.radius, values<double>(data, "radius"));
     expect_values(r.tangents, values<double>(data, "tangent"));
     expect_values(r.von_mises, values<double>(data, "von_mises"));
-    for (const PointField& field : r.fields) expect_values(field.values, values<double>(data, field.name.c_str()));
+    for (const Field& field : r.fields) expect_values(field.values, values<double>(data, field.name.c_str()));
     EXPECT_EQ(values<std::int64_t>(p.child("Cells"), "offsets"), std::vector<std::int64_t>{samples});
     EXPECT_EQ(values<std::uint8_t>(p.child("Cells"), "types"), std::vector<std::uint8_t>{4});
   }

@@ -52,6 +52,26 @@ Eigen::Matrix3Xd deformed(const Body& body, double size, const Vec3& turn = Vec3
   return lie::exp(turn) * (body.rest + size * 5e-3 * bumps);
 }
 
+/// The tangent without the mass, over the coordinates of all nodes, held or not.
+Eigen::MatrixXd dense_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind) {
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * body.nodes(), 3 * body.nodes());
+  assemble_tangent(body, start, x, kind, [&](int cell, const ElementMatrix& own) {
+    const std::span<const int> at = body.cells[static_cast<std::size_t>(cell)].nodes();
+    for (std::size_t a = 0; a < at.size(); ++a) {
+      for (std::size_t b = 0; b < at.size(); ++b)
+        K.block<3, 3>(3 * at[a], 3 * at[b]) +=
+            own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+    }
+  });
+  return K;
+}
+
+StepStart still(const Body& body) { return {body.rest, Eigen::Matrix3Xd::Zero(3, body.nodes()), 0.0}; }
+
+double smallest_eigenvalue(const Eigen::MatrixXd& K) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().minCoeff();
+}
+
 class EveryBody : public testing::TestWithParam<std::tuple<Kind, int>> {
  protected:
   Kind kind = std::get<0>(GetParam());
@@ -108,20 +128,11 @@ TEST_P(EveryBody, exact_tangent_matches_finite_differences_of_the_residual) {
       for (const double size : kSizes) {
         const Eigen::Matrix3Xd x0 = deformed(own, 0.5 * size, Vec3(0.8, -1.3, 0.4)), x = deformed(own, size);
         const StepStart start{x0, Eigen::Matrix3Xd::Constant(3, own.nodes(), 0.1), 100.0};
-        const int n = 3 * own.nodes();
-        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+        Eigen::MatrixXd A = dense_tangent(own, start, x, Tangent::exact);
         for (int a = 0; a < own.nodes(); ++a) {
           for (int b = 0; b < own.nodes(); ++b)
-            A.block<3, 3>(3 * a, 3 * b).diagonal().setConstant(mass_factor(own, start.rate) * own.mass.coeff(a, b));
+            A.block<3, 3>(3 * a, 3 * b).diagonal().array() += mass_factor(own, start.rate) * own.mass.coeff(a, b);
         }
-        assemble_tangent(own, start, x, Tangent::exact, [&](int cell, const ElementMatrix& K) {
-          const std::span<const int> at = own.cells[static_cast<std::size_t>(cell)].nodes();
-          for (std::size_t a = 0; a < at.size(); ++a) {
-            for (std::size_t b = 0; b < at.size(); ++b)
-              A.block<3, 3>(3 * at[a], 3 * at[b]) +=
-                  K.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-          }
-        });
         const Eigen::MatrixXd D = test::difference(
             [&](const Eigen::VectorXd& y) { return flat(residual(own, start, nodes(y), Vec3(0, -9.81, 0))); }, flat(x),
             2e-8);
@@ -134,26 +145,60 @@ TEST_P(EveryBody, exact_tangent_matches_finite_differences_of_the_residual) {
 }
 
 TEST_P(EveryBody, definite_tangent_is_semi_definite_and_exact_at_rest) {
-  const int n = 3 * body.nodes();
-  const StepStart still{body.rest, Eigen::Matrix3Xd::Zero(3, body.nodes()), 0.0};
-  const auto dense = [&](const Eigen::Matrix3Xd& x, Tangent tangent) {
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-    assemble_tangent(body, still, x, tangent, [&](int cell, const ElementMatrix& own) {
-      const std::span<const int> at = body.cells[static_cast<std::size_t>(cell)].nodes();
-      for (std::size_t a = 0; a < at.size(); ++a) {
-        for (std::size_t b = 0; b < at.size(); ++b)
-          K.block<3, 3>(3 * at[a], 3 * at[b]) +=
-              own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-      }
-    });
-    return K;
-  };
-  const Eigen::MatrixXd exact = dense(deformed(body, 0.0), Tangent::exact);
-  EXPECT_LT((exact - dense(deformed(body, 0.0), Tangent::definite)).norm(), 1e-9 * exact.norm());
+  const Eigen::Matrix3Xd turned = deformed(body, 0.0);
+  const Eigen::MatrixXd exact = dense_tangent(body, still(body), turned, Tangent::exact);
+  EXPECT_LT((exact - dense_tangent(body, still(body), turned, Tangent::definite)).norm(), 1e-9 * exact.norm());
   Eigen::Matrix3Xd crushed = body.rest;
   crushed.row(1) *= 0.6;
-  const Eigen::MatrixXd K = dense(crushed, Tangent::definite);
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().minCoeff(), -1e-12 * K.norm());
+  const Eigen::MatrixXd K = dense_tangent(body, still(body), crushed, Tangent::definite);
+  EXPECT_GT(smallest_eigenvalue(K), -1e-12 * K.norm());
+}
+
+TEST_P(EveryBody, only_rigid_motions_cost_nothing) {
+  Mesh one = test::block_mesh(1, 1, 1, Vec3(10e-3, 10e-3, 10e-3), kind);
+  one.cells.resize(1);
+  const Eigen::Array<bool, 3, Eigen::Dynamic> free =
+      Eigen::Array<bool, 3, Eigen::Dynamic>::Constant(3, one.nodes.cols(), false);
+  const Body element = make_body(one.nodes, one.cells, {{law, 1100.0, {}}}, {0}, free);
+  const Eigen::MatrixXd K = dense_tangent(element, still(element), element.rest, Tangent::exact);
+  const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
+  const auto without = 3 * (one.nodes.cols() - node_count(kind));  // coordinates of nodes that are in no element
+  EXPECT_LT(eigenvalues.head(without + 6).cwiseAbs().maxCoeff(), 1e-12 * K.norm());
+  EXPECT_GT(eigenvalues[without + 6], 1e-4 * K.norm());
+}
+
+TEST_P(EveryBody, damping_leaves_rigid_motion_alone_and_takes_energy_from_others) {
+  const Body damped = sample_body(kind, law, 0.1);
+  const Eigen::Matrix3Xd x0 = deformed(damped, 0.05), none = Eigen::Matrix3Xd::Zero(3, damped.nodes());
+  const StepStart start{x0, none, 100.0};
+  const auto damping = [&](const Eigen::Matrix3Xd& x) -> Eigen::Matrix3Xd {
+    const Eigen::Matrix3Xd v = (x - x0) * start.rate;
+    return residual(damped, start, x, Vec3::Zero()) - elastic_force(damped, x) -
+           (v * start.rate + damped.damping_mass * v) * damped.mass;
+  };
+  const Mat3 Q = lie::exp(Vec3(0.2, -0.4, 0.3));  // by half a radian in one step
+  const Eigen::Matrix3Xd turned = (Q * x0).colwise() + Vec3(0.1, 0.0, -0.2);
+  const Eigen::Matrix3Xd stretched = 1.05 * x0;
+  EXPECT_LT(damping(turned).norm(), 1e-9 * damping(stretched).norm());
+  EXPECT_GT(damping(stretched).cwiseProduct(stretched - x0).sum(), 0.0);
+  // Internal forces: no resultant, and no moment about any point.
+  const Eigen::Matrix3Xd f = damping(Q * stretched);
+  EXPECT_LT(f.rowwise().sum().norm(), 1e-10 * f.norm());
+  Vec3 moment = Vec3::Zero();
+  for (int i = 0; i < damped.nodes(); ++i) moment += Vec3((Q * stretched).col(i)).cross(Vec3(f.col(i)));
+  EXPECT_LT(moment.norm(), 1e-12 * f.norm());
+}
+
+TEST(Body, definite_tangent_of_an_auxetic_law_is_semi_definite) {
+  for (const Kind kind : kKinds) {
+    const Body body = sample_body(kind, saint_venant_kirchhoff(500e3, -0.3));
+    Eigen::Matrix3Xd crushed = body.rest;
+    crushed.array().colwise() *= Eigen::Array3d(0.55, 0.54, 0.58);
+    const Eigen::MatrixXd exact = dense_tangent(body, still(body), crushed, Tangent::exact);
+    EXPECT_LT(smallest_eigenvalue(exact), -1e-6 * exact.norm());
+    const Eigen::MatrixXd K = dense_tangent(body, still(body), crushed, Tangent::definite);
+    EXPECT_GT(smallest_eigenvalue(K), -1e-12 * K.norm());
+  }
 }
 
 /// Patch test: under any homogeneous deformation inner nodes are in balance and stress is that of the law.
@@ -189,8 +234,12 @@ TEST_P(EveryBody, homogeneous_deformation_balances_inside) {
   }
   EXPECT_GE(inside, 8);
   const Mat3 sigma = cauchy_stress(density(law, F, Derivatives::first).first, F);
-  for (int cell = 0; cell < patch.elements(); ++cell)
-    EXPECT_LT((cauchy_stress(patch, cell, x) - sigma).norm(), 1e-11 * stiffness);
+  for (int cell = 0; cell < patch.elements(); ++cell) {
+    const CellMeans means = cell_means(patch, cell, x);
+    EXPECT_LT((means.stress - sigma).norm(), 1e-11 * stiffness);
+    EXPECT_LT((means.strain - 0.5 * (F.transpose() * F - Mat3::Identity())).norm(), 1e-12);
+    EXPECT_NEAR(means.volume_ratio, F.determinant(), 1e-12);
+  }
 }
 
 TEST_P(EveryBody, mass_adds_up_and_free_fall_is_the_backward_euler_recurrence) {
@@ -220,16 +269,8 @@ TEST(Body, free_vibration_is_the_backward_euler_recurrence) {
     const double h = 0.01, tiny = 5e-11, damping = 0.02;
     const Body body = sample_body(kind, kLaws[0].law, damping);
     const int n = 3 * body.nodes();
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n), M = K;
-    const StepStart still{body.rest, Eigen::Matrix3Xd::Zero(3, body.nodes()), 0.0};
-    assemble_tangent(body, still, body.rest, Tangent::exact, [&](int cell, const ElementMatrix& own) {
-      const std::span<const int> at = body.cells[static_cast<std::size_t>(cell)].nodes();
-      for (std::size_t a = 0; a < at.size(); ++a) {
-        for (std::size_t b = 0; b < at.size(); ++b)
-          K.block<3, 3>(3 * at[a], 3 * at[b]) +=
-              own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-      }
-    });
+    const Eigen::MatrixXd K = dense_tangent(body, still(body), body.rest, Tangent::exact);
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
     for (int i = 0; i < n; ++i) M(i, i) = body.masses[i / 3];
     const Eigen::VectorXd u0 = tiny * Eigen::VectorXd::LinSpaced(n, -1, 2),
                           v0 = 30 * tiny * Eigen::VectorXd::LinSpaced(n, 1, -1);

@@ -121,6 +121,7 @@ std::string vtu_text(const SolidSnapshot& solid, double time) {
   if (solid.rest.cols() == solid.nodes.cols()) point_data = doubles("displacement", solid.nodes - solid.rest);
   if (solid.von_mises.size() == static_cast<Eigen::Index>(solid.cells.size()))
     cell_data = doubles("von_mises", solid.von_mises.transpose());
+  for (const Field& field : solid.fields) cell_data += doubles(field.name, field.values);
   return grid(time, solid.nodes, ends.size(), cells(connectivity, ends, types), point_data, cell_data);
 }
 
@@ -138,7 +139,7 @@ std::string vtu_text(const RodSnapshot& rod, double time) {
   add("abscissa", rod.abscissa.transpose());
   add("radius", rod.radius.transpose());
   add("tangent", rod.tangents);
-  for (const PointField& field : rod.fields) add(field.name, field.values);
+  for (const Field& field : rod.fields) add(field.name, field.values);
   add("von_mises", rod.von_mises.transpose());
   return grid(time, rod.points, ends.size(), cells(connectivity, ends, types), data, "");
 }

@@ -35,7 +35,7 @@ bool Linearization::finite() const {
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
   if (!factor_solids(kind, failed)) return false;
-  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) {
+  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0 || !conservative()) {
     couple();
     return true;
   }
@@ -84,12 +84,19 @@ void Linearization::stiffen() {
   coupled_.emplace(reduced_.problem);
 }
 
+bool Linearization::conservative() const {
+  const auto& loads = context_.model.loads;
+  const auto& chains = reduced_.problem.chains;
+  return std::all_of(chains.begin(), chains.end(),
+                     [](const solve::ChainPart& part) { return part.chain.symmetric(); }) &&
+         std::all_of(loads.begin(), loads.end(), [](const LoadModel& load) {
+           const SolidLoadModel* own = std::get_if<SolidLoadModel>(&load.on);
+           return !own || own->conservative;
+         });
+}
+
 bool Linearization::unstable() const {
-  if (rotated_ || !coupled_) return false;
-  for (const solve::ChainPart& part : reduced_.problem.chains) {
-    if (!part.chain.symmetric()) return false;
-  }
-  return negative_ + coupled_->negative() > context_.model.rows;
+  return !rotated_ && coupled_ && conservative() && negative_ + coupled_->negative() > context_.model.rows;
 }
 
 Increment Linearization::solve(const Linearization& right) {

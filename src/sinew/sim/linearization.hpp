@@ -36,6 +36,8 @@ class Linearization {
   /// Factors the coupled problem again with the rods' own stiffness raised by a millionth: next to a limit
   /// point, where it is singular, the solution is as large as it must be and still has the right direction.
   void stiffen();
+  /// All forces have a potential here: the tangent is symmetric, and its negative eigenvalues tell of stability.
+  bool conservative() const;
   bool rotated() const { return rotated_; }  ///< a definite tangent stood in for the exact one
   /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
   /// a definite one stood in.

@@ -183,6 +183,10 @@ std::vector<NaturalMode> dense_modes(const Coordinates& at, const Linearization&
 std::vector<NaturalMode> lanczos_modes(const Coordinates& at, Linearization& here, const State& equilibrium, int count,
                                        std::string& failed) {
   if (!here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) return {};
+  if (here.rotated()) {
+    failed = "the tangent at the equilibrium is singular: a body is free to move, or about to buckle";
+    return {};
+  }
   Stiffness stiffness(at, here);
   Mass mass(at, equilibrium);
   const int n = static_cast<int>(at.size), wanted = std::min(count, n - 1);
@@ -204,14 +208,21 @@ std::vector<NaturalMode> lanczos_modes(const Coordinates& at, Linearization& her
 
 }  // namespace
 
+/// What an analysis finds: the equilibrium under the loads of t = 0, and the modes about it.
+struct Modes {
+  StepResult equilibrium;
+  std::vector<NaturalMode> modes;
+};
+
 std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace, const State& equilibrium, int count,
                                        std::string& failed) {
   StageTimes times;
   const StepContext context = make_context(model, equilibrium, command_at(model, 0.0), 0.0);
   Linearization here(context, workspace, equilibrium, times);
-  for (const solve::ChainPart& part : here.reduced().problem.chains) {
-    if (part.chain.symmetric()) continue;
-    failed = "follower forces and moments have no potential: modes about them need not vibrate; leave those loads out";
+  if (!here.conservative()) {
+    failed =
+        "follower forces, moments, and pressure on a surface with a free rim have no potential: modes about them need "
+        "not vibrate; leave those loads out";
     return {};
   }
   const Coordinates at(model);
@@ -219,27 +230,39 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
                               : lanczos_modes(at, here, equilibrium, count, failed);
 }
 
+namespace {
+
+Modes find_modes(const Model& model, Workspace& workspace) {
+  Modes found{equilibrium_step(model, workspace, command_at(model, 0.0), initial_state(model), 0.0), {}};
+  StepReport& report = found.equilibrium.report;
+  if (accepted(report.status))
+    found.modes = natural_modes(model, workspace, found.equilibrium.next, model.scene.modes, report.detail);
+  return found;
+}
+
+}  // namespace
+
 StepResult modal_step(const Model& model, Workspace& workspace, const State& state) {
-  StepResult result = equilibrium_step(model, workspace, command_at(model, 0.0), initial_state(model), 0.0);
-  if (!accepted(result.report.status)) return {state, result.report};
-  State equilibrium = result.next;
-  std::vector<NaturalMode> modes =
-      natural_modes(model, workspace, equilibrium, model.scene.modes, result.report.detail);
+  if (!workspace.modes) workspace.modes = std::make_shared<const Modes>(find_modes(model, workspace));
+  const auto& [found, modes] = *workspace.modes;
+  StepReport report = found.report;
+  if (!accepted(report.status)) return {state, report};
   const auto number = static_cast<std::size_t>(state.grid);
   if (number >= modes.size()) {
-    result.report.status = Status::singular;
-    if (!modes.empty()) result.report.detail = "the scene has " + std::to_string(modes.size()) + " modes only";
-    return {state, result.report};
+    report.status = Status::singular;
+    if (!modes.empty()) report.detail = "the scene has " + std::to_string(modes.size()) + " modes only";
+    return {state, report};
   }
-  const StepContext context = make_context(model, equilibrium, command_at(model, 0.0), 0.0);
-  const double motion = largest_motion(model, context, equilibrium, modes[number].shape);
+  State shown = found.next;
+  const StepContext context = make_context(model, found.next, command_at(model, 0.0), 0.0);
+  const double motion = largest_motion(model, context, shown, modes[number].shape);
   const double turn = largest_turn(context, modes[number].shape.reduced);
   const double amplitude = motion > 0.0 ? 0.1 * model.size / motion : turn > 0.0 ? 0.5 / turn : 0.0;
-  advance_by(context, modes[number].shape, amplitude, equilibrium);
-  equilibrium.grid = state.grid + 1;
-  equilibrium.time = static_cast<double>(equilibrium.grid);
-  equilibrium.frequency = modes[number].frequency;
-  return {std::move(equilibrium), result.report};
+  advance_by(context, modes[number].shape, amplitude, shown);
+  shown.grid = state.grid + 1;
+  shown.time = static_cast<double>(shown.grid);
+  shown.frequency = modes[number].frequency;
+  return {std::move(shown), report};
 }
 
 }  // namespace sinew

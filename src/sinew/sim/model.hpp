@@ -148,6 +148,7 @@ struct SolidLoadModel {
   double pressure = 0.0;               ///< [Pa]
   std::vector<solid::CellFace> faces;  ///< under it
   std::vector<int> places;             ///< of the faces' tangents in the solid's matrix, face by face
+  bool conservative = true;            ///< the tangent is symmetric: the faces are closed, or their rim is held
 };
 
 struct LoadModel {

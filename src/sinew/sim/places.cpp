@@ -22,6 +22,13 @@ Vec3 solid_point(const Model& model, const State& state, int solid, const solid:
   return solid::position(where, model.solids[solid].body.cells, state.solids[solid].x);
 }
 
+int count_folded(const Model& model, const State& state) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.solids.size(); ++i)
+    count += solid::folded_cells(model.solids[i].body, state.solids[i].x).size();
+  return static_cast<int>(count);
+}
+
 double motor_position(const Model& model, const State& state, const ActuatorModel& actuator) {
   const Line& line = actuator.line;
   if (actuator.tendon) {

@@ -19,6 +19,9 @@ rod::Configuration rod_shape(const Model& model, const State& state, int rod);
 /// A point of a solid.
 Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where);
 
+/// How many cells of solids are flat or inside out.
+int count_folded(const Model& model, const State& state);
+
 /// How far a motor has moved its base, or drawn its tendon [m] or [rad]; and all of them.
 double motor_position(const Model& model, const State& state, const ActuatorModel& actuator);
 std::vector<double> motor_positions(const Model& model, const State& state);

@@ -9,6 +9,12 @@
 
 namespace sinew {
 
+/// Values at the points of a rod or in the cells of a solid, by name: what ParaView shows.
+struct Field {
+  std::string name;
+  Eigen::MatrixXd values;  ///< components x points or cells; six are a symmetric tensor, xx yy zz xy yz xz
+};
+
 struct SolidSnapshot {
   std::string name;
   Eigen::Matrix3Xd rest;   ///< [m] node positions at t = 0
@@ -16,12 +22,9 @@ struct SolidSnapshot {
   std::vector<solid::Cell> cells;
   std::vector<solid::Triangle> surface;
   Eigen::VectorXd von_mises;  ///< [Pa] per cell
-};
-
-/// Values at the points of a rod, by name: what ParaView shows.
-struct PointField {
-  std::string name;
-  Eigen::MatrixXd values;  ///< components x points
+  /// Means over cells: Cauchy stress [Pa], Green-Lagrange strain, volume now over volume at rest; the material's
+  /// number.
+  std::vector<Field> fields;
 };
 
 /// A rod sampled along its length. Where a value jumps it belongs to the section that starts at the point.
@@ -34,7 +37,7 @@ struct RodSnapshot {
   Eigen::VectorXd von_mises;  ///< [Pa] largest of the cross-section; empty for a geometric cable
   /// Strains (NOTATION.md) [1/m and -], internal moments [N m] and forces [N] in the axes of the cross-section,
   /// stresses [Pa] axial, of bending, of torsion; none for a geometric cable.
-  std::vector<PointField> fields;
+  std::vector<Field> fields;
 };
 
 struct MarkSnapshot {

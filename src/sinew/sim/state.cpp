@@ -90,6 +90,7 @@ void each_number(StateType& state, const Visit& visit) {
   visit(state.path.step);
   visit(state.path.rate);
   visit(state.path.count);
+  visit(state.path.farthest);
   array(state.path.direction);
   visit(state.frequency);
 }

@@ -40,6 +40,7 @@ struct PathState {
   double step = 0.0;          ///< arc length to try next
   double rate = 0.0;          ///< last change of the load factor over the arc
   double count = 0.0;         ///< steps taken
+  double farthest = 0.0;      ///< largest load factor so far
   bool stable = true;         ///< the equilibrium there
   Eigen::VectorXd direction;  ///< and of everything else; empty before the first step and in other analyses
 };

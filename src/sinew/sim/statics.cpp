@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
@@ -76,7 +77,10 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
   }
   StepReport report;
   if (from.t < kBehindTheStart || state.path.count > kMostSteps) {
+    char text[60];
+    std::snprintf(text, sizeof text, "it came as far as %.3g %% of the load", 100.0 * state.path.farthest);
     report.status = Status::path_lost;
+    report.detail = text;
     return {from, report};
   }
   const ContextAt at = along(model, ramp, state);
@@ -124,6 +128,7 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
     if (!accepted(report.status) || (state.path.stable && report.unstable && arc > kArcAtBranch)) continue;
     PathState& path = next.at.state.path;
     path.count = state.path.count + 1.0;
+    path.farthest = std::max(state.path.farthest, next.at.t);
     path.step =
         std::min(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0), kLongestArc);
     path.stable = !report.unstable;

@@ -36,22 +36,20 @@ std::string_view explain(Status status) {
       return "The step made the number of linearisations asked for; its residual says how far that is from "
              "equilibrium.";
     case Status::max_iterations:
-      return "Newton did not reach its tolerance. Try a smaller time step, a slower motion, or more stiffness damping "
-             "(rayleigh).";
+      return "Newton did not reach its tolerance. Try smaller steps, a slower motion or less load, more iterations "
+             "(newton.limit), or, in motion, more stiffness damping (rayleigh).";
     case Status::singular:
-      return "A matrix could not be factored: the body has collapsed, or nothing holds a motion (a massless rod that "
-             "no coupling ties, driven by a force). Look at the last "
-             "picture; try a smaller step.";
+      return "A matrix could not be factored: nothing holds a motion (a part of a mesh that is not connected, a "
+             "massless rod that no coupling ties), or the body has collapsed. Look at the last picture; try a smaller "
+             "step.";
     case Status::diverged:
       return "Numbers grew without bound. Try a smaller time step or a slower motion.";
     case Status::inverted:
       return "An element turned inside out, beyond where its law is defined. Take shorter steps, a finer mesh there, "
-             "or a "
-             "law that goes on (neo_hookean, corotational).";
+             "or a law that goes on (neo_hookean, corotational).";
     case Status::path_lost:
       return "The path of equilibria turned back for good: there is no equilibrium under the full load, or only one "
-             "that a "
-             "jump leads to. Reduce the load or the motion; the recorded states show how far it went.";
+             "that a jump leads to. Reduce the load or the motion; the recorded states show how far it went.";
     case Status::rod_exhausted:
       return "The base end of a rod reached a sliding point. Let the rod start further outside the body, or pull less "
              "the other way.";

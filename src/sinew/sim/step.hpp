@@ -1,6 +1,7 @@
 // One time step: backward Euler of (6) and (7) with their couplings.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,13 +36,16 @@ struct StepReport {
   StageTimes times;
 };
 
-/// Memory that steps reuse; holds no information between them. One per thread.
+struct Modes;
+
+/// Memory that steps of one model reuse; holds nothing between them that they would not find again. One per thread.
 struct Workspace {
   struct Solid {
     linalg::SparseFactor factor;
     linalg::SparseFactor::Matrix matrix;
   };
   std::vector<Solid> solids;
+  std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
 };
 Workspace make_workspace(const Model& model);
 

@@ -210,13 +210,6 @@ const RodModel* exhausted(const Model& model, const State& state) {
   return nullptr;
 }
 
-int count_folded(const Model& model, const State& state) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < model.solids.size(); ++i)
-    count += solid::folded_cells(model.solids[i].body, state.solids[i].x).size();
-  return static_cast<int>(count);
-}
-
 std::string broken_cell(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const solid::Body& body = model.solids[i].body;

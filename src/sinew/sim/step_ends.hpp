@@ -26,9 +26,6 @@ bool turned_over(const StepContext& context, const State& state);
 /// The first rod that has been drawn past a sliding point, if any.
 const RodModel* exhausted(const Model& model, const State& state);
 
-/// How many cells are flat or inside out.
-int count_folded(const Model& model, const State& state);
-
 /// Names a cell that has turned inside out where its law ends, and where it is; empty if there is none.
 std::string broken_cell(const Model& model, const State& state);
 

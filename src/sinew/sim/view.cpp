@@ -11,6 +11,9 @@ namespace sinew {
 
 namespace {
 
+/// In the order of ParaView's symmetric tensors.
+Eigen::Matrix<double, 6, 1> six(const solid::Mat3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(0, 2)}; }
+
 RodSnapshot sample_cable(const Model& model, const State& state, int number) {
   const CableModel& cable = model.cables[number];
   const Eigen::VectorXd& z = state.cables[number].z;
@@ -77,7 +80,7 @@ std::string when(const Model& model, const State& state) {
   char text[80];
   switch (model.scene.analysis) {
     case Analysis::modal:
-      if (state.grid == 0) return "at rest";
+      if (state.grid == 0) return "rest";
       std::snprintf(text, sizeof text, "mode %ld, %.4g Hz", state.grid, state.frequency);
       return text;
     case Analysis::statics:
@@ -99,11 +102,27 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const SolidModel& solid = model.solids[i];
     const Eigen::Matrix3Xd& x = state.solids[i].x;
-    view.solids.push_back({solid.name, solid.body.rest, x, solid.body.cells, solid.surface, {}});
-    Eigen::VectorXd& von_mises = view.solids.back().von_mises;
-    von_mises.resize(solid.body.elements());
-    for (int cell = 0; cell < solid.body.elements(); ++cell)
-      von_mises[cell] = solid::von_mises(solid::cauchy_stress(solid.body, cell, x));
+    const int cells = solid.body.elements();
+    Eigen::VectorXd von_mises(cells), ratio(cells), material(cells);
+    Eigen::MatrixXd stress(6, cells), strain(6, cells);
+    for (int cell = 0; cell < cells; ++cell) {
+      const solid::CellMeans means = solid::cell_means(solid.body, cell, x);
+      von_mises[cell] = solid::von_mises(means.stress);
+      ratio[cell] = means.volume_ratio;
+      material[cell] = solid.body.material[static_cast<std::size_t>(cell)];
+      stress.col(cell) = six(means.stress);
+      strain.col(cell) = six(means.strain);
+    }
+    view.solids.push_back({solid.name,
+                           solid.body.rest,
+                           x,
+                           solid.body.cells,
+                           solid.surface,
+                           von_mises,
+                           {{"stress", stress},
+                            {"strain", strain},
+                            {"volume_ratio", ratio.transpose()},
+                            {"material", material.transpose()}}});
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i)
     view.rods.push_back(sample_rod(model, state, static_cast<int>(i)));

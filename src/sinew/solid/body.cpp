@@ -208,18 +208,20 @@ Mat3 symmetric(const Mat3& m) { return 0.5 * (m + m.transpose()); }
 
 }  // namespace
 
-Mat3 cauchy_stress(const Body& body, int cell, const Eigen::Matrix3Xd& x) {
+CellMeans cell_means(const Body& body, int cell, const Eigen::Matrix3Xd& x) {
   const ElementRest rest = body.element(cell);
   const NodeVectors own = body.at_nodes(cell, x);
   const ElementStress stress(body.of(cell).law, rest, own);
-  Mat3 kirchhoff = Mat3::Zero();
-  double now = 0.0;
+  Mat3 kirchhoff = Mat3::Zero(), strain = Mat3::Zero();
+  double before = 0.0, now = 0.0;
   for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
     const Mat3 F = deformation_gradient(rest, q, own);
     kirchhoff += rest.volumes[q] * stress(F) * F.transpose();
+    strain += rest.volumes[q] * green_strain(F);
+    before += rest.volumes[q];
     now += rest.volumes[q] * F.determinant();
   }
-  return now > 0.0 ? symmetric(kirchhoff / now) : Mat3::Constant(NAN);
+  return {now > 0.0 ? symmetric(kirchhoff / now) : Mat3::Constant(NAN), strain / before, now / before};
 }
 
 namespace {
@@ -239,8 +241,7 @@ Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Ma
 }
 
 Mat3 green_strain(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x) {
-  const Mat3 F = gradient_at(body, point, x);
-  return 0.5 * (F.transpose() * F - Mat3::Identity());
+  return green_strain(gradient_at(body, point, x));
 }
 
 Vec3 principal_values(const Mat3& tensor) {

@@ -92,12 +92,19 @@ double mass_factor(const Body& body, double rate);
 /// Cells whose volume has vanished or turned inside out at one of their quadrature points.
 std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x);
 
-/// Cauchy stress sigma = P F^T / J [Pa] at a point, with the mean dilatation of its element; and the mean over the
-/// volume that a cell has now. NaN where that volume is not positive.
+/// Cauchy stress sigma = P F^T / J [Pa] at a point, with the mean dilatation of its element. NaN where the element is
+/// flat or inside out.
 Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);
-Mat3 cauchy_stress(const Body& body, int cell, const Eigen::Matrix3Xd& x);
 /// Green-Lagrange strain (F^T F - I) / 2 at a point.
 Mat3 green_strain(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);
+
+/// Means over a cell.
+struct CellMeans {
+  Mat3 stress;                ///< Cauchy's [Pa], over the volume that the cell has now; NaN where that is not positive
+  Mat3 strain;                ///< Green and Lagrange's, over the volume at rest
+  double volume_ratio = 1.0;  ///< volume now over volume at rest
+};
+CellMeans cell_means(const Body& body, int cell, const Eigen::Matrix3Xd& x);
 
 /// Eigenvalues of a symmetric tensor, largest first.
 Vec3 principal_values(const Mat3& tensor);
