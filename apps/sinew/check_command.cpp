@@ -4,6 +4,7 @@
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/loaded_scene.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/solid/mesh_order.hpp"
 #include "sinew/solid/mesh_summary.hpp"
 
 namespace sinew::app {
@@ -143,6 +144,14 @@ int describe_mesh(const std::filesystem::path& path) {
       "  volume {:.6g}; cells from {:.3g} to {:.3g}; worst shape {:.3g} of 1 (cell {} near {:.4g}, {:.4g}, {:.4g})\n",
       s.volume, s.smallest, s.largest, s.worst_quality, s.worst_cell, s.worst_centre.x(), s.worst_centre.y(),
       s.worst_centre.z());
+  if (const int meeting = solid::meeting_orders(mesh.cells); meeting > 0)
+    fmt::print("  {} 4-node tetrahedra meet 10-node ones: in a scene all are raised to 10 nodes\n", meeting);
+  if (const auto pair = solid::mismatched_faces(mesh.cells))
+    fmt::print("  cells {} and {} are not tied where a hexahedron's face meets triangles: a scene refuses this mesh\n",
+               pair->front(), pair->back());
+  if (const auto pair = solid::mismatched_edges(mesh.cells))
+    fmt::print("  cells {} and {} have different nodes in the middle of an edge: a scene refuses this mesh\n",
+               pair->front(), pair->back());
   if (s.diagonal > 10.0) fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
   return kDone;
 }

@@ -202,7 +202,7 @@ solids:
     material: {law: mooney_rivlin, c10: 80 kPa, c01: 20 kPa, poisson: 0.45}
     density: 1000
     fixed: {group: "7"}
-  ball: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {sphere: {center: [0, 0, 0], radius: 1 mm}, axes: [x], frame: grip}}
+  ball: {mesh: b.vtk, order: 2, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {sphere: {center: [0, 0, 0], radius: 1 mm}, axes: [x], frame: grip}}
   plate: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 1 mm}}}
   pin: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {nodes: [1, 2, 3]}}
   skin: {mesh: b.vtk, density: 1, material: {young: 1 MPa, poisson: 0.3}, fixed: {surface: true}}

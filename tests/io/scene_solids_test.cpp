@@ -28,6 +28,11 @@ TEST(SceneSolids, ReadsLawsAndParts) {
   EXPECT_TRUE(std::holds_alternative<solid::Corotational>(finger.parts[5].material.law));
 }
 
+TEST(SceneSolids, ReadsTheOrderOfElements) {
+  EXPECT_EQ(parse().solids[0].second.order, 1);
+  EXPECT_EQ(parse().solids[2].second.order, 2);
+}
+
 TEST(SceneSolids, ReadsRegions) {
   const Solid finger = parse().solids[0].second;
   ASSERT_EQ(finger.fixed.size(), 6u);
@@ -54,6 +59,9 @@ TEST(SceneSolids, AreRefusedWithLineFieldRuleAndRemedy) {
       {"bulk: 2 MPa, viscosity", "viscosity", 7, "solids.finger.material.bulk", "", "is missing", "one of bulk"},
       {"bulk: 2 MPa", "bulk: 2 MPa, poisson: 0.4", 7, "solids.finger.material.bulk", "", "cannot be given together",
        "give one of"},
+      {"order: 2", "order: 0", 35, "solids.ball.order", "0", "must be at least 1", ""},
+      {"order: 2", "order: 3", 35, "solids.ball.order", "3", "must be at most 2", ""},
+      {"order: 2", "order: quadratic", 35, "solids.ball.order", "quadratic", "must be a whole number", ""},
       {"alpha: [1.3, 5, -2]", "alpha: [1.3, 5]", 7, "solids.finger.material.alpha", "[1.3, 5]",
        "as many as mu, 3, not 2", "a power for each"},
       {"alpha: [1.3, 5, -2]", "alpha: [1.3, 5, 0]", 7, "solids.finger.material.alpha", "[1.3, 5, 0]",

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/solid/mesh_order.hpp"
 #include "sinew/solid/mesh_summary.hpp"
 #include "solid/sample_elements.hpp"
 
@@ -61,26 +62,6 @@ Mesh box(int n, const Eigen::Vector3d& size) {
     // Along two edges of the brick from its corner 0, then to the opposite corner 6.
     const std::array<std::pair<std::size_t, std::size_t>, 6> paths = {{{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}};
     for (const auto& [a, b] : paths) mesh.cells.push_back(tet(corner(0), corner(a), corner(b), corner(6)));
-  }
-  return mesh;
-}
-
-/// With a node in the middle of each edge.
-Mesh quadratic(Mesh mesh) {
-  std::map<std::pair<int, int>, int> middles;
-  for (Cell& cell : mesh.cells) {
-    cell.kind = Kind::tet10;
-    int next = 4;
-    for (const auto& [i, j] :
-         {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0), std::pair(0, 3), std::pair(1, 3), std::pair(2, 3)}) {
-      const int a = cell.node[static_cast<std::size_t>(i)], b = cell.node[static_cast<std::size_t>(j)];
-      const auto [at, added] = middles.try_emplace(std::minmax(a, b), static_cast<int>(mesh.nodes.cols()));
-      if (added) {
-        mesh.nodes.conservativeResize(3, mesh.nodes.cols() + 1);
-        mesh.nodes.rightCols(1) = 0.5 * (mesh.nodes.col(a) + mesh.nodes.col(b));
-      }
-      cell.node[static_cast<std::size_t>(next++)] = at->second;
-    }
   }
   return mesh;
 }

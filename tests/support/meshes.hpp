@@ -1,33 +1,11 @@
 // Meshes of blocks, for tests that read no file.
 #pragma once
 
-#include <map>
 #include <utility>
 
-#include "sinew/solid/mesh.hpp"
+#include "sinew/solid/mesh_order.hpp"
 
 namespace sinew::test {
-
-/// The same mesh with nodes in the middle of all edges.
-inline solid::Mesh quadratic(solid::Mesh mesh) {
-  static constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-  std::map<std::pair<int, int>, int> middle;
-  auto nodes = static_cast<int>(mesh.nodes.cols());
-  for (solid::Cell& cell : mesh.cells) {
-    cell.kind = solid::Kind::tet10;
-    for (std::size_t e = 0; e < 6; ++e) {
-      const auto ends = std::minmax(cell.node[static_cast<std::size_t>(kEdges[e][0])],
-                                    cell.node[static_cast<std::size_t>(kEdges[e][1])]);
-      const auto [at, fresh] = middle.try_emplace({ends.first, ends.second}, nodes);
-      if (fresh) ++nodes;
-      cell.node[4 + e] = at->second;
-    }
-  }
-  mesh.nodes.conservativeResize(3, nodes);
-  for (const auto& [ends, node] : middle)
-    mesh.nodes.col(node) = 0.5 * (mesh.nodes.col(ends.first) + mesh.nodes.col(ends.second));
-  return mesh;
-}
 
 /// A block from the origin to `size` in nx x ny x nz boxes: one hexahedron each, or six tetrahedra.
 inline solid::Mesh block_mesh(int nx, int ny, int nz, const solid::Vec3& size, solid::Kind kind = solid::Kind::tet4) {
@@ -59,7 +37,32 @@ inline solid::Mesh block_mesh(int nx, int ny, int nz, const solid::Vec3& size, s
       }
     }
   }
-  return kind == solid::Kind::tet10 ? quadratic(mesh) : mesh;
+  return kind == solid::Kind::tet10 ? solid::quadratic(mesh) : mesh;
+}
+
+/// A mesh of 4-node tetrahedra, those beyond half its length along x raised. Nodes that only the others would have had
+/// stay, unused.
+inline solid::Mesh half_quadratic(const solid::Mesh& linear) {
+  solid::Mesh mesh = solid::quadratic(linear);
+  const double half = 0.5 * (linear.nodes.row(0).minCoeff() + linear.nodes.row(0).maxCoeff());
+  for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
+    if (solid::cell_nodes(linear.nodes, linear.cells[i]).row(0).mean() < half) mesh.cells[i] = linear.cells[i];
+  }
+  return mesh;
+}
+
+/// Both in one mesh, sharing no node; groups are left out.
+inline solid::Mesh together(const solid::Mesh& first, const solid::Mesh& second) {
+  solid::Mesh mesh;
+  mesh.nodes.resize(3, first.nodes.cols() + second.nodes.cols());
+  mesh.nodes << first.nodes, second.nodes;
+  mesh.cells = first.cells;
+  for (solid::Cell cell : second.cells) {
+    for (int i = 0; i < solid::node_count(cell.kind); ++i)
+      cell.node[static_cast<std::size_t>(i)] += static_cast<int>(first.nodes.cols());
+    mesh.cells.push_back(cell);
+  }
+  return mesh;
 }
 
 }  // namespace sinew::test

@@ -83,6 +83,10 @@ Type<Solid> solid() {
                      &Solid::mesh, file_name()),
         field<Solid>({"scale", optional, "what mesh coordinates are multiplied by to be in m", "0.001"}, &Solid::scale,
                      quantity(Dimension::number, above(0.0))),
+        field<Solid>(
+            {"order", optional,
+             "of its elements: 1 as the file has them, 2 with 10-node tetrahedra in place of 4-node ones", "2"},
+            &Solid::order, whole_number(1, 2)),
         field<Solid>({"pose", optional, "where the solid stands, after scale", "{translate: [0, 20 mm, 0]}"},
                      &Solid::pose, pose()),
         field<Solid>({"frame", optional, "the frame that carries it and its pose", "hand"}, &Solid::frame,

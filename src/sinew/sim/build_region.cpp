@@ -44,6 +44,7 @@ class Inside {
         reject(path_ + ".nodes", std::to_string(node), "no element of the mesh uses this node", "remove it");
       in[number[node]] = true;
     }
+    add_raised(in);
     return in;
   }
   std::vector<bool> operator()(const GroupName& group) const {
@@ -67,6 +68,19 @@ class Inside {
   }
 
  private:
+  /// A node that the file does not have, between two nodes of the region, belongs to it: an edge that was held whole by
+  /// its ends stays so, and faces and cells keep all their nodes.
+  void add_raised(std::vector<bool>& in) const {
+    const int first = 1 + *std::max_element(solid_.mesh.number.begin(), solid_.mesh.number.end());
+    for (const solid::Cell& cell : solid_.body.cells) {
+      if (cell.kind != solid::Kind::tet10) continue;
+      std::size_t middle = 4;
+      for (const auto& [a, b] : solid::tetrahedron_edges()) {
+        const int node = cell.node[middle++];
+        if (node >= first && in[cell.node[a]] && in[cell.node[b]]) in[node] = true;
+      }
+    }
+  }
   std::size_t nodes() const { return static_cast<std::size_t>(solid_.mesh.object.cols()); }
   template <class Test>
   std::vector<bool> each(In where, const Test& test) const {

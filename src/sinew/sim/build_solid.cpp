@@ -4,6 +4,7 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/solid_matrix.hpp"
+#include "sinew/solid/mesh_order.hpp"
 
 namespace sinew::building {
 
@@ -51,6 +52,51 @@ solid::Mesh read_named(const MeshReader& read_mesh, const std::filesystem::path&
   }
 }
 
+/// Cells must be tied wherever they meet.
+void check_tied(const std::vector<solid::Cell>& cells, const std::string& path) {
+  const auto name = [&cells](int cell) {
+    return std::to_string(cell) + " (" + solid::name(cells[static_cast<std::size_t>(cell)].kind) + ")";
+  };
+  const auto both = [&](const solid::CellPair& pair) {
+    return "cells " + name(pair[0]) + " and " + name(pair[1]) + ", 0-based, counting used cells only";
+  };
+  if (const auto pair = solid::mismatched_faces(cells))
+    reject(path, both(*pair), "a quadrilateral face cannot be tied to triangles, and the body would come apart there",
+           "mesh pieces that touch with the same kind of element, hexahedra or tetrahedra");
+  if (const auto pair = solid::mismatched_edges(cells))
+    reject(path, both(*pair), "share an edge, but not the node in its middle, and the body would come apart there",
+           "join nodes at the same place in the program that writes the mesh");
+}
+
+/// Gives 4-node tetrahedra nodes in the middle of their edges where that is asked for, or where they meet cells that
+/// have them.
+void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vector<std::string>& warnings) {
+  if (order != 1 && order != 2)
+    reject(path + ".order", std::to_string(order), "must be 1 or 2", "1 keeps the elements of the file, 2 raises them");
+  const auto of = [&mesh](solid::Kind kind) {
+    return std::count_if(mesh.cells.begin(), mesh.cells.end(),
+                         [kind](const solid::Cell& cell) { return cell.kind == kind; });
+  };
+  const auto hexahedra = of(solid::Kind::hex8), linear = of(solid::Kind::tet4);
+  if (order == 2 && hexahedra > 0)
+    warnings.push_back(path + ".order: raises tetrahedra only; hexahedra keep their 8 nodes (" +
+                       std::to_string(hexahedra) + " of them)");
+  const int meeting = solid::meeting_orders(mesh.cells);
+  if (order == 1 && meeting == 0) return;
+  mesh = solid::quadratic(std::move(mesh));
+  if (meeting == 0) return;
+  if (order == 1)
+    warnings.push_back(path + ".mesh: " + std::to_string(meeting) +
+                       " 4-node tetrahedra meet 10-node ones; to tie them all 4-node tetrahedra (" +
+                       std::to_string(linear) + ") are raised to 10 nodes, as with `order: 2`");
+  for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
+    if (mesh.cells[i].kind == solid::Kind::tet10 && !(solid::smallest_jacobian(mesh.nodes, mesh.cells[i]) > 1e-12))
+      reject(path + ".mesh", "cell " + std::to_string(i) + " (0-based, counting used cells only)",
+             "this tetrahedron is folded once its edges follow the curved ones of the 10-node tetrahedra it meets",
+             "save all tetrahedra of the mesh with 10 nodes, or all with 4");
+  }
+}
+
 /// The material as bodies want it. Rayleigh's share of the stiffness is a viscosity of the same shape.
 solid::Material make_material(const SolidMaterial& material, const Solid& solid, double density,
                               const std::string& path) {
@@ -89,7 +135,8 @@ Eigen::Array<bool, 3, Eigen::Dynamic> hold(const Scene& scene, const Solid& soli
 
 }  // namespace
 
-SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh) {
+SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
+                       std::vector<std::string>& warnings) {
   const std::string path = "solids." + name;
   SolidModel model;
   model.name = name;
@@ -99,6 +146,8 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   solid::Mesh mesh =
       read_named(read_mesh, solid.mesh.is_absolute() ? solid.mesh : scene.folder / solid.mesh, path + ".mesh");
   model.mesh.number = compact(mesh);
+  check_tied(mesh.cells, path + ".mesh");
+  raise_order(mesh, solid.order, path, warnings);
   model.mesh.object = solid.scale * mesh.nodes;
   model.mesh.boundary = solid::boundary(mesh.cells);
   model.mesh.groups = std::move(mesh.groups);

@@ -49,7 +49,8 @@ Selection select(const SolidModel& solid, const Region& region, const std::strin
 /// Adds up to 1.
 Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection);
 
-SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh);
+SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
+                       std::vector<std::string>& warnings);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
 CableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
 

@@ -125,7 +125,7 @@ void warn_of_locking(Model& model, const SolidModel& solid) {
   }
   if (poisson > 0.48) {
     model.warnings.push_back("solids." + solid.name + ": 4-node tetrahedra lock at Poisson's ratio " + text(poisson) +
-                             " and bend too little; save the mesh with second-order elements (10-node tetrahedra)");
+                             " and bend too little; set `order: 2` (10-node tetrahedra)");
   }
 }
 
@@ -210,7 +210,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     reject("time.duration", text(scene.time.duration) + " s", "must be greater than 0 for `analysis: static`",
            "loads and motors are taken from the tables at the end of the duration");
   for (const auto& [name, solid] : scene.solids) {
-    model.solids.push_back(build_solid(scene, name, solid, read_mesh));
+    model.solids.push_back(build_solid(scene, name, solid, read_mesh, model.warnings));
     warn_of_locking(model, model.solids.back());
   }
   for (const auto& [name, rod] : scene.rods) {

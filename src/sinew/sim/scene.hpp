@@ -125,6 +125,7 @@ struct Rayleigh {
 struct Solid {
   std::filesystem::path mesh;        ///< relative to the scene file
   double scale = 1.0;                ///< mesh units to m, > 0
+  int order = 1;                     ///< 1: elements as the file has them; 2: its 4-node tetrahedra get 10 nodes
   Pose pose;                         ///< after scale
   std::optional<std::string> frame;  ///< attached to this frame
   SolidMaterial material;

@@ -259,6 +259,8 @@ double outside(Kind kind, const Vec3& xi) {
   return std::max({0.0, -xi.minCoeff(), xi.sum() - 1.0});
 }
 
+std::span<const std::array<int, 2>, 6> tetrahedron_edges() { return kTetrahedronEdges; }
+
 std::span<const Face> faces(Kind kind) {
   if (kind == Kind::tet4) return kTetrahedronFaces;
   if (kind == Kind::tet10) return kQuadraticFaces;

@@ -50,6 +50,9 @@ std::optional<Vec3> local_coordinates(Kind kind, const NodeVectors& nodes, const
 /// How far xi lies outside the reference element, 0 inside: the largest violation of its bounds.
 double outside(Kind kind, const Vec3& xi);
 
+/// Between which corners of a 10-node tetrahedron its nodes 4 to 9 lie.
+std::span<const std::array<int, 2>, 6> tetrahedron_edges();
+
 /// A face: its nodes counter-clockwise seen from outside, corners first (3, then 3 mid-edge nodes; or 4).
 struct Face {
   int corners = 3;

@@ -47,8 +47,9 @@ struct Mesh {
   std::map<std::string, int> ignored;  ///< other cells of the file: kind ("wedge", "line", ...) and how many
 };
 
-/// Boundary faces of the cells, outward, each with all its nodes; in the order of the cells. Faces with the same
-/// corners are the same face, whether or not both have nodes in the middle of their edges.
+/// Boundary faces of the cells, outward, each with all its nodes; in the order of the cells: those whose corners are
+/// not the corners of another cell's face. True of meshes that hold together (mesh_order.hpp); elsewhere a triangle on
+/// a quadrilateral is taken for boundary, and so are both.
 std::vector<CellFace> boundary(const std::vector<Cell>& cells);
 /// The same as triangles of all its nodes: a face of 6 nodes becomes four, of 4 nodes two.
 std::vector<Triangle> surface(const std::vector<Cell>& cells);
@@ -60,7 +61,8 @@ NodeVectors cell_nodes(const Eigen::Matrix3Xd& nodes, const Cell& cell);
 /// Volume of a cell by its mass quadrature, in the cube of the nodes' unit: exact, negative if inverted.
 double volume(const Eigen::Matrix3Xd& nodes, const Cell& cell);
 /// The smallest determinant of dX/dxi at its quadrature points and nodes, over the mean of their sizes: 1 for affine
-/// cells, not positive where the cell is folded, inverted or without volume.
+/// cells, not positive if the cell is inverted, without volume, or folded at one of them. Folds between them it does
+/// not see.
 double smallest_jacobian(const Eigen::Matrix3Xd& nodes, const Cell& cell);
 
 }  // namespace sinew::solid
