@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/solid_matrix.hpp"
+#include "sinew/solid/pressure.hpp"
 
 namespace sinew::building {
 
@@ -38,18 +40,46 @@ RodLoadModel on_rod(const Model& model, const RodLoad& load, const std::string& 
   return own;
 }
 
+/// Whether the tangent of a pressure on faces is symmetric (solid/README.md, "Loads on faces").
+bool is_conservative(const Scene& scene, const SolidModel& solid, const std::vector<solid::CellFace>& faces) {
+  const auto turns = [&](int frame) {
+    const auto& motion = frame < 0 ? std::nullopt : scene.frames[frame].second.motion;
+    return motion && !motion->rotate.empty();
+  };
+  const auto vanishes = [&](const solid::Edge& edge) {
+    const std::span<const int> nodes = edge.nodes();
+    const int carrier = solid.carrier[nodes[0]];
+    int held = 0, in_plane = 0;  // axes: that all nodes are held along; that stay across a plane which they stay in
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto is_held = [&](int node) { return solid.body.unknown(axis, node) < 0; };
+      const auto is_level = [&](int node) {
+        return solid.carrier[node] == carrier && !turns(carrier) &&
+               std::abs(solid.body.rest(axis, node) - solid.body.rest(axis, nodes[0])) <= 1e-6 * solid.mesh.diagonal;
+      };
+      if (!std::all_of(nodes.begin(), nodes.end(), is_held)) continue;
+      ++held;
+      in_plane += std::all_of(nodes.begin(), nodes.end(), is_level) ? 1 : 0;
+    }
+    return held >= 2 || in_plane > 0;
+  };
+  const std::vector<solid::Edge> rim = solid::rim(faces);
+  return std::all_of(rim.begin(), rim.end(), vanishes);
+}
+
 SolidLoadModel on_solid(const Model& model, const SolidLoad& load, const std::string& path) {
   SolidLoadModel own;
   own.solid = find(model.scene.solids, load.solid, path + ".solid", "solid");
   const SolidModel& solid = model.solids[own.solid];
-  const Selection selection = select(solid, load.region, path);
-  if (!load.force.isZero(0.0)) own.force = load.force * shares(solid, selection).transpose();
+  const Selection selection = select_loaded(solid, load.region, path);
+  if (!load.force.isZero(0.0)) own.force = load.force * shares(solid, selection, Spread::evenly).transpose();
   if (load.pressure == 0.0) return own;
   if (selection.faces.empty())
-    reject(path, "", "no face of the surface lies in this region with all its nodes", "enlarge the region");
+    reject(path, "", "no face of the surface belongs to this region",
+           "enlarge the region: a face belongs to it with all its nodes, or to a group that lists it or its cell");
   own.pressure = load.pressure;
   own.faces = selection.faces;
   own.places = face_places(solid, own.faces);
+  own.conservative = is_conservative(model.scene, solid, own.faces);
   return own;
 }
 

@@ -14,9 +14,14 @@ void on_solid(Model& model, const Output& output, const std::string& path, Outpu
   const SolidModel& solid = model.solids[own.solid];
   if (output.quantity == Quantity::reaction) {
     own.nodes.assign(static_cast<std::size_t>(solid.body.nodes()), !output.region);
-    if (!output.region) return;
-    for (const int node : select(solid, *output.region, path).nodes) own.nodes[node] = true;
-    return;
+    if (output.region) {
+      for (const int node : select(solid, *output.region, path + ".region").nodes) own.nodes[node] = true;
+    }
+    for (int node = 0; node < solid.body.nodes(); ++node) {
+      if (own.nodes[node] && solid.body.unknown.col(node).minCoeff() < 0) return;
+    }
+    reject(path, *output.solid, output.region ? "no node of this region is held" : "no node of this solid is held",
+           "a reaction is the force on what is `fixed`: name a region that is");
   }
   const Pose& pose = model.scene.solids[own.solid].second.pose;
   const Vec3 x =

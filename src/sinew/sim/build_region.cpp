@@ -12,17 +12,17 @@ namespace {
 /// Which nodes a region holds.
 class Inside {
  public:
-  Inside(const SolidModel& solid, const std::string& path) : solid_(solid), path_(path) {}
+  Inside(const SolidModel& solid, const std::string& path)
+      : solid_(solid), path_(path), slack_(1e-9 * solid.mesh.diagonal) {}
 
   std::vector<bool> operator()(const Box& box) const {
-    const double slack = 1e-9 * solid_.mesh.diagonal;
     return each(box.in, [&](const Vec3& x) {
-      return ((x - box.lower).array() >= -slack).all() && ((x - box.upper).array() <= slack).all();
+      return ((x - box.lower).array() >= -slack_).all() && ((x - box.upper).array() <= slack_).all();
     });
   }
   std::vector<bool> operator()(const Sphere& sphere) const {
     require_positive(sphere.radius, path_ + ".sphere.radius", "give the radius of the region");
-    return each(sphere.in, [&](const Vec3& x) { return (x - sphere.center).norm() <= sphere.radius; });
+    return each(sphere.in, [&](const Vec3& x) { return (x - sphere.center).norm() <= sphere.radius + slack_; });
   }
   std::vector<bool> operator()(const Plane& plane) const {
     if (!(plane.normal.norm() > 0.0))
@@ -92,11 +92,25 @@ class Inside {
 
   const SolidModel& solid_;
   const std::string& path_;
+  const double slack_;  ///< [m] of rounding, for nodes on the border of a region
 };
 
 std::set<int> corners(const solid::CellFace& face) {
   const auto count = static_cast<std::size_t>(face.count == 4 ? 4 : 3);
   return {face.node.begin(), face.node.begin() + count};
+}
+
+/// Cells and boundary faces of a group, by what the file lists: faces, or else those of its cells.
+void listed(const SolidModel& solid, const solid::Group& group, Selection& selection) {
+  selection.cells = group.cells;
+  std::vector<solid::Cell> cells;
+  for (const int cell : group.cells) cells.push_back(solid.body.cells[cell]);
+  std::set<std::set<int>> named;
+  for (const solid::CellFace& face : group.faces.empty() ? solid::boundary(cells) : group.faces)
+    named.insert(corners(face));
+  for (const solid::CellFace& face : solid.mesh.boundary) {
+    if (named.contains(corners(face))) selection.faces.push_back(face);
+  }
 }
 
 }  // namespace
@@ -124,29 +138,33 @@ Selection select(const SolidModel& solid, const Region& region, const std::strin
            "the nodes span " + text(Vec3(x.rowwise().minCoeff())) + " .. " + text(Vec3(x.rowwise().maxCoeff())) +
                " m " + (world ? "in the world" : "before the pose") + "; check scale and units");
   }
-  const GroupName* name = std::get_if<GroupName>(&region);
-  const solid::Group* group = name ? &solid.mesh.groups.at(name->name) : nullptr;
-  if (group && !group->cells.empty()) {
-    selection.cells = group->cells;
-  } else {
-    for (std::size_t e = 0; e < solid.body.cells.size(); ++e) {
-      if (all_in(solid.body.cells[e].nodes())) selection.cells.push_back(static_cast<int>(e));
-    }
+  if (const GroupName* name = std::get_if<GroupName>(&region)) {
+    listed(solid, solid.mesh.groups.at(name->name), selection);
+    return selection;
   }
-  std::set<std::set<int>> named;
-  if (group) {
-    for (const solid::CellFace& face : group->faces) named.insert(corners(face));
+  for (std::size_t e = 0; e < solid.body.cells.size(); ++e) {
+    if (all_in(solid.body.cells[e].nodes())) selection.cells.push_back(static_cast<int>(e));
   }
   for (const solid::CellFace& face : solid.mesh.boundary) {
-    if (named.empty() ? all_in(face.nodes()) : named.contains(corners(face))) selection.faces.push_back(face);
+    if (all_in(face.nodes())) selection.faces.push_back(face);
   }
   return selection;
 }
 
-Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection) {
+Selection select_loaded(const SolidModel& solid, const Region& region, const std::string& path) {
+  Selection selection = select(solid, region, path);
+  const GroupName* name = std::get_if<GroupName>(&region);
+  if (name && selection.faces.empty() && !solid.mesh.groups.at(name->name).faces.empty())
+    reject(path + ".group", name->name, "none of its faces is on the boundary of the body",
+           "name a group of faces of the surface, or give a region");
+  return selection;
+}
+
+Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection, Spread spread) {
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(solid.mesh.object.cols());
   for (const solid::CellFace& face : selection.faces) {
-    const solid::FaceValues own = solid::face_shares(face, solid.body.rest);
+    const solid::FaceValues own = spread == Spread::evenly ? solid::face_shares(face, solid.body.rest)
+                                                           : solid::lumped_face_shares(face, solid.body.rest);
     for (int i = 0; i < face.count; ++i) weight[face.node[i]] += own[i];
   }
   if (selection.faces.empty()) {

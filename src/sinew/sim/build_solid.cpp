@@ -97,9 +97,9 @@ void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vec
   }
 }
 
-/// The material as bodies want it. Rayleigh's share of the stiffness is a viscosity of the same shape.
-solid::Material make_material(const SolidMaterial& material, const Solid& solid, double density,
-                              const std::string& path) {
+/// The material as bodies want it. Rayleigh's share of the stiffness is a viscosity of the same shape. Without a
+/// density it is 0 or, where the body's mass is given, any.
+solid::Material make_material(const SolidMaterial& material, const Solid& solid, const std::string& path) {
   const solid::Lame moduli = solid::lame(material.law);
   if (!(moduli.mu > 0.0 && 3.0 * moduli.lambda + 2.0 * moduli.mu > 0.0 && std::isfinite(moduli.lambda))) {
     reject(
@@ -108,10 +108,11 @@ solid::Material make_material(const SolidMaterial& material, const Solid& solid,
         "both must be greater than 0 and finite",
         "give young > 0 and poisson between -1 and 0.5 (0.49 for a nearly incompressible silicone)");
   }
-  if (!(material.viscosity >= 0.0))
-    reject(path + ".viscosity", text(material.viscosity) + " Pa s", "must not be negative", "leave it out for none");
+  require_not_negative(material.viscosity, path + ".viscosity", "leave it out for none");
+  if (material.density) require_positive(*material.density, path + ".density", "give the density of this material");
   const double b = solid.rayleigh.stiffness, eta = material.viscosity;
-  return {material.law, material.density.value_or(density), {b * moduli.mu + eta, b * moduli.lambda - 2.0 / 3.0 * eta}};
+  const double density = material.density.value_or(solid.density.value_or(solid.mass ? 1.0 : 0.0));
+  return {material.law, density, {b * moduli.mu + eta, b * moduli.lambda - 2.0 / 3.0 * eta}};
 }
 
 /// Holds the coordinates of the nodes in `fixed`, each by its frame.
@@ -151,6 +152,7 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   model.mesh.object = solid.scale * mesh.nodes;
   model.mesh.boundary = solid::boundary(mesh.cells);
   model.mesh.groups = std::move(mesh.groups);
+  model.mesh.ignored = std::move(mesh.ignored);
   const Placement pose = stand(scene, model.frame, solid.pose);
   const Eigen::Matrix3Xd world = (pose.R * model.mesh.object).colwise() + pose.p;
   model.mesh.diagonal = (world.rowwise().maxCoeff() - world.rowwise().minCoeff()).norm();
@@ -166,20 +168,27 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   const bool densities = solid.density || solid.material.density || by_parts > 0;
   if (solid.mass.has_value() == densities)
     reject(path, "", "needs exactly one of mass and density", "give `mass: 75 g` or `density: 1070 kg/m^3`");
-  const double density = solid.density.value_or(1.0);
-  if (densities) require_positive(density, path + ".density", "give the density of the body");
+  if (solid.density) require_positive(*solid.density, path + ".density", "give the density of the body");
   if (solid.mass) require_positive(*solid.mass, path + ".mass", "give the mass of the body");
+  require_not_negative(solid.rayleigh.mass, path + ".rayleigh.mass", "leave it out for none");
+  require_not_negative(solid.rayleigh.stiffness, path + ".rayleigh.stiffness", "leave it out for none");
 
-  std::vector<solid::Material> materials = {make_material(solid.material, solid, density, path + ".material")};
+  std::vector<solid::Material> materials = {make_material(solid.material, solid, path + ".material")};
   std::vector<int> material(mesh.cells.size(), 0);
   for (std::size_t i = 0; i < solid.parts.size(); ++i) {
     const std::string own = path + ".parts." + std::to_string(i);
-    materials.push_back(make_material(solid.parts[i].material, solid, density, own + ".material"));
+    materials.push_back(make_material(solid.parts[i].material, solid, own + ".material"));
     const std::vector<int> cells = select(model, solid.parts[i].region, own).cells;
     if (cells.empty())
-      reject(own, "", "no cell of the mesh lies in this region with all its nodes", "enlarge the region");
+      reject(own, "", "no cell of the mesh belongs to this region",
+             "enlarge the region: a cell belongs to it with all its nodes, or to a group that lists it");
     for (const int cell : cells) material[cell] = static_cast<int>(i) + 1;
   }
+  const auto without =
+      std::count_if(material.begin(), material.end(), [&](int own) { return materials[own].density == 0.0; });
+  if (without > 0)
+    reject(path + ".density", "", "is not known of " + std::to_string(without) + " of the cells",
+           "give the density of the body, or of the materials of all its parts");
   const auto held = hold(scene, solid, path, model);
   if (held.all()) reject(path + ".fixed", "all nodes", "some node must be free", "make the region smaller");
 
@@ -192,7 +201,8 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
     if (!(spring.stiffness.minCoeff() >= 0.0 && spring.stiffness.allFinite()))
       reject(own + ".stiffness", text(spring.stiffness) + " N/m", "must not be negative", "give N/m along x, y and z");
     if (model.springs.size() == 0) model.springs.setZero(3, model.body.nodes());
-    model.springs += spring.stiffness * shares(model, select(model, spring.region, own)).transpose();
+    model.springs +=
+        spring.stiffness * shares(model, select_loaded(model, spring.region, own), Spread::lumped).transpose();
   }
   make_pattern(model);
   return model;

@@ -25,6 +25,10 @@ void require_positive(double value, const std::string& path, const std::string& 
     reject(path, text(value), "must be a finite number greater than 0", remedy);
 }
 
+void require_not_negative(double value, const std::string& path, const std::string& remedy) {
+  if (!(value >= 0.0) || !std::isfinite(value)) reject(path, text(value), "must be a finite number, 0 or more", remedy);
+}
+
 int find_frame(const Scene& scene, const std::optional<std::string>& name, const std::string& path) {
   return name ? find(scene.frames, *name, path + ".frame", "frame") : -1;
 }

@@ -19,6 +19,7 @@ std::string text(const Vec3& v);
 [[noreturn]] void reject(const std::string& path, const std::string& value, const std::string& rule,
                          const std::string& remedy);
 void require_positive(double value, const std::string& path, const std::string& remedy);
+void require_not_negative(double value, const std::string& path, const std::string& remedy);
 
 /// Number of the entry of this name, or a rejection that lists the known ones.
 template <class T>
@@ -45,9 +46,15 @@ struct Selection {
   std::vector<solid::CellFace> faces;  ///< of the boundary, outward
 };
 Selection select(const SolidModel& solid, const Region& region, const std::string& path);
-/// How a load on a selection is shared by all nodes of the solid: evenly over its faces, or if it has none its nodes.
+/// The same of what is loaded or sprung: a group of faces none of which is on the boundary is rejected, too.
+Selection select_loaded(const SolidModel& solid, const Region& region, const std::string& path);
+
+/// How all nodes of the solid share what acts on a selection: over its faces or, if it has none, equally over its
+/// nodes. `evenly`: as a force per area does, at the corners of faces of 6 nodes nothing or less. `lumped`: all above
+/// zero.
+enum class Spread { evenly, lumped };
 /// Adds up to 1.
-Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection);
+Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection, Spread spread);
 
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
                        std::vector<std::string>& warnings);
@@ -86,6 +93,9 @@ solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const 
 
 /// A table must have as many times as values.
 void check_drive(const Drive& drive, const std::string& path);
+
+/// Statics needs bodies that something holds; in motion they may fly, which is warned of.
+void check_held(Model& model, int solid);
 
 void build_slide(Model& model, int number, const Slide& slide);
 void build_tie(Model& model, int number, const Tie& tie);

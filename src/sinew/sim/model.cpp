@@ -129,24 +129,19 @@ void warn_of_locking(Model& model, const SolidModel& solid) {
   }
 }
 
-/// Statics needs bodies that something holds; in motion they may fly.
-void check_held(Model& model, std::size_t number) {
-  const SolidModel& solid = model.solids[number];
-  const bool held = solid.held() >= 6 || solid.springs.size() > 0;
-  const bool coupled = std::any_of(model.points.begin(), model.points.end(),
-                                   [&](const PointModel& p) { return p.solid == static_cast<int>(number); }) ||
-                       std::any_of(model.ties.begin(), model.ties.end(),
-                                   [&](const TieModel& tie) { return tie.solid == static_cast<int>(number); });
-  if (held) return;
-  if (coupled || model.scene.analysis == Analysis::dynamic) {
-    model.warnings.push_back("solids." + solid.name +
-                             ": fewer than three nodes are fixed and no springs hold it; it falls or turns freely, but "
-                             "for its couplings");
-    return;
+/// Where the file has elements that are not used, the body has holes.
+void warn_of_holes(Model& model, const SolidModel& solid) {
+  std::string found;
+  for (const auto& [kind, count] : solid.mesh.ignored) {
+    const auto is_a = [&kind = kind](const char* volume) { return kind.find(volume) != std::string::npos; };
+    if (!is_a("tetrahedron") && !is_a("hexahedron") && !is_a("wedge") && !is_a("pyramid") && !is_a("polyhedron"))
+      continue;
+    found += (found.empty() ? "" : ", ") + std::to_string(count) + " of kind " + kind;
   }
-  reject("solids." + solid.name + ".fixed", std::to_string(solid.held()) + " coordinates",
-         "at least three nodes must be fixed, or the body falls or turns freely",
-         "add `fixed: {box: [[..], [..]]}` around the part that is held, or `springs`");
+  if (found.empty()) return;
+  model.warnings.push_back("solids." + solid.name +
+                           ".mesh: the body has holes where the file has cells that are not used, " + found +
+                           "; save the mesh with tetrahedra of 4 or 10 nodes or hexahedra of 8");
 }
 
 /// Concentrated loads of each rod: where its internal forces may jump.
@@ -212,6 +207,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   for (const auto& [name, solid] : scene.solids) {
     model.solids.push_back(build_solid(scene, name, solid, read_mesh, model.warnings));
     warn_of_locking(model, model.solids.back());
+    warn_of_holes(model, model.solids.back());
   }
   for (const auto& [name, rod] : scene.rods) {
     if (rod.cable == Cable::geometric) {
@@ -233,7 +229,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
-  for (std::size_t i = 0; i < model.solids.size(); ++i) check_held(model, i);
+  for (std::size_t i = 0; i < model.solids.size(); ++i) check_held(model, static_cast<int>(i));
   count_jumps(model);
   measure(model);
   const State start = initial_state(model);

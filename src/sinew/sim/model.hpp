@@ -25,6 +25,7 @@ struct PlacedMesh {
   std::vector<int> number;                     ///< of the nodes of the file: ours, or -1 where no cell uses it
   std::vector<solid::CellFace> boundary;       ///< outward
   std::map<std::string, solid::Group> groups;  ///< in our numbers
+  std::map<std::string, int> ignored;          ///< cells of the file that are not used, by kind
   double diagonal = 0.0;                       ///< [m]
 };
 

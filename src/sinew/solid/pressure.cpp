@@ -1,6 +1,8 @@
 #include "sinew/solid/pressure.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <map>
 
 #include "sinew/lie/rotation.hpp"
 
@@ -16,17 +18,33 @@ Eigen::Matrix3Xd at_nodes(const CellFace& face, const Eigen::Matrix3Xd& x) {
   return own;
 }
 
+/// Visits the face's quadrature points with the area each stands for and N there.
+template <class Visit>
+void each_area(const CellFace& face, const Eigen::Matrix3Xd& x, const Visit& visit) {
+  const Face kind = kind_of(face);
+  const Eigen::Matrix3Xd own = at_nodes(face, x);
+  for (const FacePoint& point : face_quadrature(kind)) {
+    const Eigen::Matrix<double, 3, 2> tangents = own * face_slopes(kind, point.xi).transpose();
+    visit(point.weight * tangents.col(0).cross(tangents.col(1)).norm(), face_functions(kind, point.xi));
+  }
+}
+
 }  // namespace
 
 FaceValues face_shares(const CellFace& face, const Eigen::Matrix3Xd& x) {
-  const Face kind = kind_of(face);
-  const Eigen::Matrix3Xd own = at_nodes(face, x);
   FaceValues shares = FaceValues::Zero(face.count);
-  for (const FacePoint& point : face_quadrature(kind)) {
-    const Eigen::Matrix<double, 3, 2> tangents = own * face_slopes(kind, point.xi).transpose();
-    shares += point.weight * tangents.col(0).cross(tangents.col(1)).norm() * face_functions(kind, point.xi);
-  }
+  each_area(face, x, [&](double area, const FaceValues& N) { shares += area * N; });
   return shares;
+}
+
+FaceValues lumped_face_shares(const CellFace& face, const Eigen::Matrix3Xd& x) {
+  FaceValues shares = FaceValues::Zero(face.count);
+  double total = 0.0;
+  each_area(face, x, [&](double area, const FaceValues& N) {
+    shares += area * N.cwiseAbs2();
+    total += area;
+  });
+  return shares * (total / shares.sum());
 }
 
 Eigen::Matrix3Xd pressure_force(const CellFace& face, double p, const Eigen::Matrix3Xd& x) {
@@ -55,6 +73,23 @@ Eigen::MatrixXd pressure_tangent(const CellFace& face, double p, const Eigen::Ma
     }
   }
   return K;
+}
+
+std::vector<Edge> rim(const std::vector<CellFace>& faces) {
+  // An edge with another middle is another curve.
+  std::map<std::array<int, 3>, int> found;  // ends in ascending order and middle; how often it runs up, less down
+  for (const CellFace& face : faces) {
+    const int corners = face.count == 4 ? 4 : 3;
+    for (int i = 0; i < corners; ++i) {
+      const int a = face.node[i], b = face.node[(i + 1) % corners], middle = face.count == 6 ? face.node[3 + i] : -1;
+      found[{std::min(a, b), std::max(a, b), middle}] += a < b ? 1 : -1;
+    }
+  }
+  std::vector<Edge> edges;
+  for (const auto& [node, turns] : found) {
+    if (turns != 0) edges.push_back({node, node[2] < 0 ? 2 : 3});
+  }
+  return edges;
 }
 
 }  // namespace sinew::solid
