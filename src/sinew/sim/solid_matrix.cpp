@@ -1,6 +1,7 @@
 #include "sinew/sim/solid_matrix.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "sinew/solid/pressure.hpp"
 
@@ -46,28 +47,42 @@ int place_of(const linalg::SparseFactor::Matrix& A, int row, int column) {
 
 void make_pattern(SolidModel& model) {
   const solid::Body& body = model.body;
-  // Rows of every column, each once.
-  std::vector<std::vector<int>> rows(static_cast<std::size_t>(body.unknowns));
-  for (int e = 0; e < body.elements(); ++e)
-    each_entry(body, body.cells[e].nodes(),
-               [&](int, int, int row, int column) { rows[static_cast<std::size_t>(column)].push_back(row); });
-  std::size_t entries = 0;
-  for (std::vector<int>& own : rows) {
+  // Nodes that share a cell with each node, ascending, each once; unknowns are numbered in the order of the nodes.
+  std::vector<std::vector<int>> near(static_cast<std::size_t>(body.nodes()));
+  for (const solid::Cell& cell : body.cells) {
+    for (const int node : cell.nodes()) {
+      for (const int other : cell.nodes()) {
+        if (other >= node) near[static_cast<std::size_t>(node)].push_back(other);
+      }
+    }
+  }
+  for (std::vector<int>& own : near) {
     std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());
-    own.shrink_to_fit();
-    entries += own.size();
   }
+  const auto each_pair = [&](const auto& visit) {
+    for (int node = 0; node < body.nodes(); ++node) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int column = body.unknown(axis, node);
+        if (column < 0) continue;
+        for (const int other : near[static_cast<std::size_t>(node)]) {
+          for (int i = 0; i < 3; ++i) {
+            const int row = body.unknown(i, other);
+            if (row >= column) visit(row, column);
+          }
+        }
+      }
+    }
+  };
   linalg::SparseFactor::Matrix& A = model.matrix;
   A.resize(body.unknowns, body.unknowns);
-  A.resizeNonZeros(static_cast<Eigen::Index>(entries));
-  int at = 0;
-  for (int column = 0; column < body.unknowns; ++column) {
-    A.outerIndexPtr()[column] = at;
-    for (const int row : rows[static_cast<std::size_t>(column)]) A.innerIndexPtr()[at++] = row;
-  }
-  A.outerIndexPtr()[body.unknowns] = at;
-  std::fill_n(A.valuePtr(), entries, 0.0);
+  int* first = A.outerIndexPtr();
+  each_pair([&](int, int column) { ++first[column + 1]; });
+  std::partial_sum(first, first + body.unknowns + 1, first);
+  A.resizeNonZeros(first[body.unknowns]);
+  std::fill_n(A.valuePtr(), A.nonZeros(), 0.0);
+  int* at = A.innerIndexPtr();
+  each_pair([&](int row, int) { *at++ = row; });
 
   const auto place = [&A](int row, int column) { return place_of(A, row, column); };
   for (int e = 0; e < body.elements(); ++e) {
