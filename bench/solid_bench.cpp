@@ -1,0 +1,236 @@
+// What the static bend of a block costs, size by size, against one sparse factorisation of the matrices it is made of.
+// README.md of this folder says how to run it and what was measured.
+#include <cholmod.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <Eigen/CholmodSupport>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sinew/sim/free_motion.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/solid_matrix.hpp"
+#include "support/meshes.hpp"
+
+namespace sinew {
+namespace {
+
+using Matrix = linalg::SparseFactor::Matrix;
+using solid::Kind;
+
+const Vec3 kSize(0.05, 0.01, 0.01);  ///< [m]
+constexpr double kForce = 0.16;      ///< [N] bends it by about a quarter of its length
+constexpr double kLimit = 1.5;       ///< how much a ratio may grow from the smallest block to the largest
+
+/// Everything measured of one block.
+struct Row {
+  int cells = 0, unknowns = 0, steps = 0, factorisations = 0;
+  double bend = 0.0;                                ///< of the tip over the length
+  double build = 0.0, run = 0.0;                    ///< [s]
+  double built = 0.0, peak = 0.0;                   ///< [MB] largest resident memory until then
+  double own = 0.0, cholmod = 0.0;                  ///< [s] one numeric factorisation
+  double own_entries = 0.0, cholmod_entries = 0.0;  ///< of the factor
+  double own_memory = 0.0, cholmod_memory = 0.0;    ///< [MB] of the factor
+  double time_ratio() const { return run / (factorisations * own); }
+  double memory_ratio() const { return peak / own_memory; }
+};
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-6;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// About so many tetrahedra, as thick as they are long.
+solid::Mesh block(Kind kind, int cells) {
+  const auto n = static_cast<int>(std::lround(std::cbrt(cells / 30.0)));
+  const auto nx = static_cast<int>(std::lround(cells / (6.0 * n * n)));
+  return test::block_mesh(nx, n, n, kSize, kind);
+}
+
+Scene bent_block() {
+  Scene scene;
+  scene.analysis = Analysis::statics;
+  Solid solid;
+  solid.mesh = "block";
+  solid.material.law = solid::corotational(600e3, 0.45);
+  solid.density = 1000.0;
+  solid.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitX()}});
+  scene.solids.emplace_back("block", solid);
+  scene.loads.emplace_back("tip", SolidLoad{"block", Plane{kSize, Vec3::UnitX()}, Vec3(0, 0, kForce)});
+  return scene;
+}
+
+/// CHOLMOD's supernodal factorisation, with the ordering it chooses by itself.
+class Cholmod {
+ public:
+  explicit Cholmod(const Matrix& A) : A_(Eigen::viewAsCholmod(A.selfadjointView<Eigen::Lower>())) {
+    cholmod_start(&common_);
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    factor_ = cholmod_analyze(&A_, &common_);
+  }
+  ~Cholmod() {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+  Cholmod(const Cholmod&) = delete;
+  Cholmod& operator=(const Cholmod&) = delete;
+  bool factor() {
+    cholmod_factorize(&A_, factor_, &common_);
+    return common_.status == CHOLMOD_OK;
+  }
+  double entries() const { return common_.lnz; }
+  double memory() const {
+    return 8e-6 * static_cast<double>(factor_->xsize) + 4e-6 * static_cast<double>(factor_->ssize);
+  }
+
+ private:
+  cholmod_common common_{};
+  cholmod_sparse A_;
+  cholmod_factor* factor_ = nullptr;
+};
+
+/// One numeric factorisation of A by the engine and by CHOLMOD, in turns.
+void factorise(const Matrix& A, Row& row) {
+  linalg::SparseFactor own;
+  own.analyze(A);
+  Cholmod cholmod(A);
+  std::vector<double> ours, theirs;
+  double spent = 0.0;
+  while (ours.size() < 3 || (ours.size() < 25 && spent < 2.0)) {
+    const double start = now();
+    if (!own.factor(A)) throw std::runtime_error("singular");
+    const double middle = now();
+    if (!cholmod.factor()) throw std::runtime_error("not positive definite");
+    const double end = now();
+    ours.push_back(middle - start);
+    theirs.push_back(end - middle);
+    spent += end - start;
+  }
+  row.own = median(ours);
+  row.cholmod = median(theirs);
+  row.own_entries = static_cast<double>(own.entries());
+  row.own_memory = 1e-6 * (sizeof(double) + sizeof(int)) * row.own_entries;
+  row.cholmod_entries = cholmod.entries();
+  row.cholmod_memory = cholmod.memory();
+}
+
+Row measure(Kind kind, int cells) {
+  Row row;
+  double start = now();
+  const Model model = build(bent_block(), [&](const auto&) { return block(kind, cells); });
+  row.build = now() - start;
+  row.built = peak_memory();
+  const solid::Body& body = model.solids[0].body;
+  row.cells = body.elements();
+  row.unknowns = body.unknowns;
+
+  State last = initial_state(model);
+  start = now();
+  const RunEnd end = run(model, last, [&](const State& state, const StepReport& report) {
+    last = state;
+    row.factorisations += report.newton + (row.steps > 0 ? 1 : 0);  // one more for the direction of the path
+    ++row.steps;
+    return true;
+  });
+  row.run = now() - start;
+  row.peak = peak_memory();
+  if (end != RunEnd::done) throw std::runtime_error("the run stopped");
+  const Eigen::Matrix3Xd moved = last.solids[0].x - body.rest;
+  row.bend = moved.row(2).maxCoeff() / kSize.x();
+
+  Matrix A = model.solids[0].matrix;
+  const StepContext context = make_context(model, last, command_at(model, last.time), 1.0);
+  assemble(model.solids[0], context.solids[0], last.solids[0].x, solid::Tangent::exact, A);
+  factorise(A, row);
+  return row;
+}
+
+/// In a process of its own, so that memory is that of this block alone.
+std::optional<Row> measure_apart(Kind kind, int cells) {
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  const pid_t child = fork();
+  if (child < 0) return {};
+  if (child == 0) {
+    try {
+      const Row row = measure(kind, cells);
+      _exit(write(ends[1], &row, sizeof row) == sizeof row ? 0 : 1);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "{}\n", error.what());
+      _exit(1);
+    }
+  }
+  close(ends[1]);
+  Row row;
+  const bool whole = read(ends[0], &row, sizeof row) == sizeof row;
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (!whole || status != 0) return {};
+  return row;
+}
+
+/// Measures and prints blocks of one kind; false where a ratio grows, or a run fails.
+bool report(Kind kind, const std::vector<int>& sizes, int most) {
+  fmt::print(
+      "\n### {}\n\n| cells | unknowns | bend / length | steps | factorisations | build [s] | run [s] | one "
+      "factorisation [s] "
+      "| CHOLMOD [s] | run / all factorisations | / CHOLMOD's | factor [M entries] | CHOLMOD's | factor [MB] "
+      "| peak, built [MB] | peak [MB] | peak / factor |\n|{}\n",
+      solid::plural(kind), [] {
+        std::string line;
+        for (int i = 0; i < 17; ++i) line += "---|";
+        return line;
+      }());
+  std::vector<Row> rows;
+  for (const int cells : sizes) {
+    if (cells > most) continue;
+    const std::optional<Row> measured = measure_apart(kind, cells);
+    if (!measured) return false;
+    const Row& row = rows.emplace_back(*measured);
+    fmt::print(
+        "| {} | {} | {:.2f} | {} | {} | {:.2f} | {:.2f} | {:.4f} | {:.4f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.1f} "
+        "| {:.0f} "
+        "| {:.0f} | {:.2f} |\n",
+        row.cells, row.unknowns, row.bend, row.steps, row.factorisations, row.build, row.run, row.own, row.cholmod,
+        row.time_ratio(), row.run / (row.factorisations * row.cholmod), 1e-6 * row.own_entries,
+        1e-6 * row.cholmod_entries, row.own_memory, row.built, row.peak, row.memory_ratio());
+    std::fflush(stdout);
+  }
+  if (rows.size() < 2) return true;
+  const double time = rows.back().time_ratio() / rows.front().time_ratio();
+  const double memory = rows.back().memory_ratio() / rows.front().memory_ratio();
+  const bool kept = time <= kLimit && memory <= kLimit;
+  fmt::print(
+      "\nFrom the smallest to the largest, time over factorisations grows by {:.2f} and memory over the factor's by "
+      "{:.2f}: at most {} {}\n",
+      time, memory, kLimit, kept ? "kept" : "BROKEN");
+  return kept;
+}
+
+}  // namespace
+}  // namespace sinew
+
+/// solid_bench [N]: blocks of at most N cells.
+int main(int argc, char** argv) {
+  const int most = argc > 1 ? std::atoi(argv[1]) : 60000;
+  const bool tet4 = sinew::report(sinew::Kind::tet4, {2000, 5000, 10000, 20000, 40000, 60000}, most);
+  const bool tet10 = sinew::report(sinew::Kind::tet10, {2000, 10000}, most);
+  return tet4 && tet10 ? 0 : 1;
+}
