@@ -44,7 +44,7 @@ class Rim : public testing::TestWithParam<Kind> {
   void expect(bool conservative, const Region& loaded = plane(Vec3(0, 0, 1), Vec3::UnitZ())) {
     load_solid(scene, loaded, Vec3::Zero(), 1.0);
     const Model model = build(scene, [this](const auto&) { return mesh; });
-    EXPECT_EQ(std::get<SolidLoadModel>(model.loads[0].on).conservative, conservative);
+    EXPECT_EQ(std::get<SolidLoadModel>(model.loads[0].on).conservative(), conservative);
     const double off = asymmetry(model);
     if (conservative) EXPECT_LT(off, 1e-14);
     if (!conservative) EXPECT_GT(off, 1e-4);

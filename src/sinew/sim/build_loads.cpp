@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/solid_matrix.hpp"
@@ -40,8 +41,9 @@ RodLoadModel on_rod(const Model& model, const RodLoad& load, const std::string& 
   return own;
 }
 
-/// Whether the tangent of a pressure on faces is symmetric (solid/README.md, "Loads on faces").
-bool is_conservative(const Scene& scene, const SolidModel& solid, const std::vector<solid::CellFace>& faces) {
+/// Unknowns of the rim of faces, where it is not held so that the tangent of a pressure is symmetric all the same
+/// (solid/README.md, "Loads on faces").
+std::vector<int> free_rim(const Scene& scene, const SolidModel& solid, const std::vector<solid::CellFace>& faces) {
   const auto turns = [&](int frame) {
     const auto& motion = frame < 0 ? std::nullopt : scene.frames[frame].second.motion;
     return motion && !motion->rotate.empty();
@@ -62,8 +64,16 @@ bool is_conservative(const Scene& scene, const SolidModel& solid, const std::vec
     }
     return held >= 2 || in_plane > 0;
   };
-  const std::vector<solid::Edge> rim = solid::rim(faces);
-  return std::all_of(rim.begin(), rim.end(), vanishes);
+  std::set<int> unknowns;
+  for (const solid::Edge& edge : solid::rim(faces)) {
+    if (vanishes(edge)) continue;
+    for (const int node : edge.nodes()) {
+      for (const int unknown : solid.body.unknown.col(node)) {
+        if (unknown >= 0) unknowns.insert(unknown);
+      }
+    }
+  }
+  return {unknowns.begin(), unknowns.end()};
 }
 
 SolidLoadModel on_solid(const Model& model, const SolidLoad& load, const std::string& path) {
@@ -79,7 +89,7 @@ SolidLoadModel on_solid(const Model& model, const SolidLoad& load, const std::st
   own.pressure = load.pressure;
   own.faces = selection.faces;
   own.places = face_places(solid, own.faces);
-  own.conservative = is_conservative(model.scene, solid, own.faces);
+  own.rim = free_rim(model.scene, solid, own.faces);
   return own;
 }
 

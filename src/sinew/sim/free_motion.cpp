@@ -35,6 +35,28 @@ void each_load(const StepContext& context, int number, const Visit& visit) {
 
 bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
 
+/// The antisymmetric part of the pressures' tangents.
+void add_rim(const StepContext& context, const Workspace::Solid& memory, const State& iterate, int number,
+             FreeMotion& free) {
+  const SolidModel& model = context.model.solids[number];
+  std::vector<int> unknowns;
+  Eigen::MatrixXd N;
+  each_load(context, number, [&](const SolidLoadModel& load, double factor) {
+    if (load.conservative() || factor == 0.0) return;
+    const auto before = static_cast<Eigen::Index>(unknowns.size()), more = static_cast<Eigen::Index>(load.rim.size());
+    unknowns.insert(unknowns.end(), load.rim.begin(), load.rim.end());
+    N.conservativeResizeLike(Eigen::MatrixXd::Zero(before + more, before + more));
+    N.bottomRightCorner(more, more) = pressure_skew(model, load, factor, iterate.solids[number].x);
+  });
+  if (unknowns.empty()) return;
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(model.body.unknowns, N.cols());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) P(unknowns[i], static_cast<Eigen::Index>(i)) = 1.0;
+  free.Y = memory.factor.half_solve(P);
+  const Eigen::MatrixXd C = free.Y.transpose() * free.signs.asDiagonal() * free.Y;
+  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(N.rows(), N.cols()) + C * N;
+  free.T = free.Y * (N * inner.inverse()).transpose();
+}
+
 }  // namespace
 
 SolidForces solid_forces(const StepContext& context, const State& iterate, int number) {
@@ -116,7 +138,13 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
     }
   }
   free.X = memory.factor.half_solve(right);
+  if (kind == solid::Tangent::exact) add_rim(context, memory, iterate, number, free);
   return free;
+}
+
+Eigen::MatrixXd with_rim(const FreeMotion& free, const Eigen::MatrixXd& y) {
+  if (free.Y.size() == 0) return y;
+  return y - free.Y * (free.T.transpose() * (free.signs.asDiagonal() * y));
 }
 
 Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b) {
@@ -130,7 +158,7 @@ Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& w
     y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
          dlambda.segment<3>(context.model.solid_rows[free.rows[k]].row);
   }
-  return solid::from_unknowns(body, workspace.solids[number].factor.back_solve(y));
+  return solid::from_unknowns(body, workspace.solids[number].factor.back_solve(with_rim(free, y)));
 }
 
 }  // namespace sinew

@@ -91,7 +91,7 @@ bool Linearization::conservative() const {
                      [](const solve::ChainPart& part) { return part.chain.symmetric(); }) &&
          std::all_of(loads.begin(), loads.end(), [](const LoadModel& load) {
            const SolidLoadModel* own = std::get_if<SolidLoadModel>(&load.on);
-           return !own || own->conservative;
+           return !own || own->conservative();
          });
 }
 

@@ -145,11 +145,12 @@ struct RodLoadModel {
 /// Forces on the nodes of a solid, dead or by pressure on faces of its boundary.
 struct SolidLoadModel {
   int solid = 0;
-  Eigen::Matrix3Xd force;              ///< [N] per node; empty: none
-  double pressure = 0.0;               ///< [Pa]
-  std::vector<solid::CellFace> faces;  ///< under it
-  std::vector<int> places;             ///< of the faces' tangents in the solid's matrix, face by face
-  bool conservative = true;            ///< the tangent is symmetric: the faces are closed, or their rim is held
+  Eigen::Matrix3Xd force;                            ///< [N] per node; empty: none
+  double pressure = 0.0;                             ///< [Pa]
+  std::vector<solid::CellFace> faces;                ///< under it
+  std::vector<int> places;                           ///< of the faces' tangents in the solid's matrix, face by face
+  std::vector<int> rim;                              ///< unknowns of the faces' rim where that is free, ascending
+  bool conservative() const { return rim.empty(); }  ///< it has a potential, its tangent is symmetric
 };
 
 struct LoadModel {

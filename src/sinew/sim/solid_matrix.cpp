@@ -112,6 +112,30 @@ void add_pressure_tangent(const SolidModel& model, const SolidLoadModel& load, d
   }
 }
 
+Eigen::MatrixXd pressure_skew(const SolidModel& model, const SolidLoadModel& load, double factor,
+                              const Eigen::Matrix3Xd& x) {
+  const auto size = static_cast<Eigen::Index>(load.rim.size());
+  Eigen::MatrixXd skew = Eigen::MatrixXd::Zero(size, size);
+  for (const solid::CellFace& face : load.faces) {
+    std::vector<Eigen::Index> at;  // of the face's coordinates on the rim, -1 inside
+    for (const int node : face.nodes()) {
+      for (const int unknown : model.body.unknown.col(node)) {
+        const auto place = std::lower_bound(load.rim.begin(), load.rim.end(), unknown);
+        at.push_back(place != load.rim.end() && *place == unknown ? place - load.rim.begin() : -1);
+      }
+    }
+    if (std::count(at.begin(), at.end(), -1) == static_cast<std::ptrdiff_t>(at.size())) continue;
+    const Eigen::MatrixXd K = solid::pressure_tangent(face, factor * load.pressure, x);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      for (std::size_t j = 0; j < at.size(); ++j) {
+        const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+        if (at[i] >= 0 && at[j] >= 0) skew(at[i], at[j]) += 0.5 * (K(a, b) - K(b, a));
+      }
+    }
+  }
+  return skew;
+}
+
 void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x, solid::Tangent kind,
               linalg::SparseFactor::Matrix& A) {
   double* values = A.valuePtr();

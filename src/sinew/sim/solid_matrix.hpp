@@ -17,5 +17,8 @@ std::vector<int> face_places(const SolidModel& model, const std::vector<solid::C
 /// Adds the symmetric part of the tangent of a pressure. The rest acts only along the open edge of the loaded surface.
 void add_pressure_tangent(const SolidModel& model, const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x,
                           linalg::SparseFactor::Matrix& A);
+/// The antisymmetric part, over the unknowns of the faces' free rim: elsewhere neighbouring faces cancel.
+Eigen::MatrixXd pressure_skew(const SolidModel& model, const SolidLoadModel& load, double factor,
+                              const Eigen::Matrix3Xd& x);
 
 }  // namespace sinew
