@@ -1,6 +1,8 @@
 // Solids against published benchmarks and closed forms.
 #include <iostream>
 
+#include "sinew/io/mesh_file.hpp"
+#include "sinew/io/scene_file.hpp"
 #include "sinew/sim/linearization.hpp"
 #include "sinew/sim/solid_loads.hpp"
 #include "sinew/sim/step_ends.hpp"
@@ -201,6 +203,59 @@ TEST_P(Locking, reactions_and_energies_balance) {
   const double work = solved.end().energies.work - solved.trace.states[1].energies.work;
   EXPECT_NEAR(work, now.total() - start.total(), 2e-3 * work);
   EXPECT_GT(work, 1e-4);
+}
+
+/// The example's finger with its cable: the equilibrium is where the damped motion ends.
+TEST(Solid, finger_pulled_by_its_cable_rests_where_its_damped_motion_ends) {
+  const auto run = [](const std::vector<std::string>& changes) {
+    const std::filesystem::path file = std::filesystem::path(SINEW_SOURCE_DIR) / "examples/finger.yaml";
+    const Trace trace = run_all(build(io::read_scene(file, changes).scene, io::read_mesh));
+    EXPECT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status) << " " << trace.failure.detail;
+    return trace.states.back().solids[0].x;
+  };
+  const Eigen::Matrix3Xd at_rest = run({"analysis=static"});
+  const Eigen::Matrix3Xd settled =
+      run({"time.step=20 ms", "time.duration=3 s", "solids.finger.rayleigh.stiffness=30 ms"});
+  const Eigen::Matrix3Xd followed = run({"analysis=quasi_static", "time.step=0.2 s"});
+  const auto apart = [&](const Eigen::Matrix3Xd& x) { return (at_rest - x).colwise().norm().maxCoeff(); };
+  std::cout << "finger: from static to the end of its motion " << apart(settled) << " m, to quasi-static "
+            << apart(followed) << " m\n";
+  EXPECT_LT(apart(settled), 1e-6);
+  EXPECT_LT(apart(followed), 1e-6);
+}
+
+/// Pressure on the top of a cantilever stays on it as it bends, and has no potential. Against the elastica under a load
+/// q per length that stays perpendicular to it: from the tip to the root, in the axes of the cross-section,
+///     N' = kappa V,   V' = q - kappa N,   kappa' = V / EI.
+TEST(Solid, follower_pressure_on_an_open_surface_bends_as_the_elastica) {
+  constexpr double L = 0.2, h = 0.005, E = 1e6, EI = E * h * h * h * h / 12, p = 10.0, q = p * h;
+  const solid::Mesh mesh =
+      mapped_block(Kind::tet10, 24, 1, 1, [](const Vec3& x) { return Vec3(L * x.x(), h * x.y(), h * x.z()); });
+  Scene scene = solid_scene(solid::saint_venant_kirchhoff(E, 0.0));
+  hold(scene, plane(Vec3::Zero(), Vec3::UnitX()));
+  load_solid(scene, plane(Vec3(0, h, 0), Vec3::UnitY()), Vec3::Zero(), p);
+  const SolvedSolid solved = solve(scene, mesh);
+  EXPECT_LT(solved.trace.states.size(), 40u);
+  for (const StepReport& report : solved.trace.reports) EXPECT_LT(report.newton, 8);
+
+  constexpr int kParts = 20000;
+  const double ds = L / kParts;
+  double N = 0.0, V = 0.0, kappa = 0.0, angle = 0.0;
+  Eigen::Vector2d root(0, 0);  // from the tip, in the axes of the tip
+  for (int i = 0; i < kParts; ++i) {
+    const double middle = angle + 0.5 * ds * kappa, dN = kappa * V, dV = q - kappa * N;
+    root += ds * Eigen::Vector2d(std::cos(middle), std::sin(middle));
+    angle += ds * (kappa + 0.5 * ds * V / EI);
+    kappa += ds * V / EI;
+    N += ds * dN;
+    V += ds * dV;
+  }
+  const Eigen::Vector2d tip = Eigen::Rotation2Dd(-angle) * root;  // from the root, in its axes
+  const Vec3 moved = solved.moved(Vec3(L, 0.5 * h, 0.5 * h));
+  std::cout << "tip at " << L + moved.x() << " " << moved.y() << ", elastica " << tip.x() << " " << tip.y() << "\n";
+  EXPECT_GT(angle, 1.0);
+  EXPECT_NEAR(L + moved.x(), tip.x(), 0.01 * L);
+  EXPECT_NEAR(moved.y(), tip.y(), 0.01 * L);
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ void add_rim(const StepContext& context, const Workspace::Solid& memory, const S
   for (std::size_t i = 0; i < unknowns.size(); ++i) P(unknowns[i], static_cast<Eigen::Index>(i)) = 1.0;
   free.Y = memory.factor.half_solve(P);
   const Eigen::MatrixXd C = free.Y.transpose() * free.signs.asDiagonal() * free.Y;
-  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(N.rows(), N.cols()) + C * N;
-  free.T = free.Y * (N * inner.inverse()).transpose();
+  // N (1 + C N)^-1 = (1 + N C)^-1 N
+  free.Z = (Eigen::MatrixXd::Identity(N.rows(), N.cols()) + N * C).partialPivLu().solve(N);
 }
 
 }  // namespace
@@ -144,7 +144,7 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
 
 Eigen::MatrixXd with_rim(const FreeMotion& free, const Eigen::MatrixXd& y) {
   if (free.Y.size() == 0) return y;
-  return y - free.Y * (free.T.transpose() * (free.signs.asDiagonal() * y));
+  return y - free.Y * (free.Z * (free.Y.transpose() * (free.signs.asDiagonal() * y)));
 }
 
 Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b) {

@@ -47,7 +47,7 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
 struct FreeMotion {
   Eigen::MatrixXd X;       ///< three columns per solid row of this volume, in the order of `rows`
   Eigen::VectorXd signs;   ///< S
-  Eigen::MatrixXd Y, T;    ///< V = 1 - Y T^T S; empty where A is symmetric
+  Eigen::MatrixXd Y, Z;    ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   std::vector<int> rows;   ///< numbers of the solid rows
   double stiffness = 0.0;  ///< [N/m] largest diagonal entry of A
   int negative = 0;        ///< negative eigenvalues of A: 0 where the volume by itself is stable
