@@ -139,7 +139,7 @@ Type<SolidMaterial> solid_material() {
         field<P>({"mu", optional, "its moduli [Pa]", "[630 kPa, 1.2 kPa, -10 kPa]"}, &P::mu, moduli),
         field<P>({"alpha", optional, "its powers", "[1.3, 5, -2]"}, &P::alpha, powers),
         field<P>({"bulk", optional, "the bulk modulus [Pa]", "50 MPa"}, &P::bulk, modulus),
-        field<P>({"viscosity", optional, "its viscosity against shear [Pa s]; three times as much against extension",
+        field<P>({"viscosity", optional, "its viscosity against shear [Pa s]; 4/3 (1 + nu)^2 of it against extension",
                   "300 Pa s"},
                  &P::viscosity, quantity(Dimension::viscosity, at_least(0.0))),
         field<P>({"density", optional, "its density [kg/m^3], instead of the solid's", "1100 kg/m^3"}, &P::density,

@@ -106,7 +106,7 @@ struct Spring {
 
 struct SolidMaterial {
   solid::Law law = solid::Corotational();
-  double viscosity = 0.0;         ///< [Pa s] >= 0, of shear; three times as much in extension
+  double viscosity = 0.0;         ///< [Pa s] >= 0, of shear; 4/3 (1 + nu)^2 of it in extension
   std::optional<double> density;  ///< [kg/m^3] > 0; none: the solid's
 };
 

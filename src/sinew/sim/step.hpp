@@ -29,7 +29,7 @@ struct StepReport {
   int newton = 0;          ///< linearisations made
   double residual = 0.0;   ///< largest unbalanced force over the largest force that acts anywhere
   double violation = 0.0;  ///< [m] largest distance of a sliding point from its rod, or of a tip from its anchor
-  bool rotated = false;    ///< the exact tangent was not positive definite somewhere, the rotated one stood in
+  bool rotated = false;    ///< a definite tangent stood in for the exact one somewhere
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
   bool redundant = false;  ///< constraint rows depended on each other
   std::string detail;      ///< names what failed, for people
