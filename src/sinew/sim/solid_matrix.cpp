@@ -85,6 +85,9 @@ void make_pattern(SolidModel& model) {
   each_pair([&](int row, int) { *at++ = row; });
 
   const auto place = [&A](int row, int column) { return place_of(A, row, column); };
+  std::size_t most = 0;
+  for (const solid::Cell& cell : body.cells) most += 3 * cell.nodes().size() * (3 * cell.nodes().size() + 1) / 2;
+  model.places.reserve(most);
   for (int e = 0; e < body.elements(); ++e) {
     model.first_place.push_back(model.places.size());
     each_entry(body, body.cells[e].nodes(),
