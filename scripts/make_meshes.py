@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes examples/meshes/finger.vtk and trunk.vtk, our own geometry, lengths in mm.
+"""Writes the meshes of examples/meshes, our own geometry, lengths in mm.
 
     pip install gmsh==4.15.2 numpy        (gmsh also needs the system library libGLU: apt install libglu1-mesa)
     python scripts/make_meshes.py [FOLDER]
@@ -94,7 +94,28 @@ def tetrahedra():
 
 def block():
     """A block of 60 x 20 x 20 mm in 12 x 4 x 4 cells of six tetrahedra, without Gmsh."""
-    n, size = np.array([12, 4, 4]), np.array([60.0, 20.0, 20.0])
+    return boxes(np.array([12, 4, 4]), np.array([60.0, 20.0, 20.0]), lambda x, y, z: True)
+
+
+def chambers():
+    """A bar of 60 x 16 x 16 mm in 10 x 4 x 4 cells with three closed chambers of 12 x 8 x 8 mm, the root at x = 0."""
+    nodes, cells = boxes(
+        np.array([10, 4, 4]), np.array([60.0, 16.0, 16.0]),
+        lambda x, y, z: x % 3 == 0 or not (1 <= y <= 2 and 1 <= z <= 2),
+    )
+    used, cells = np.unique(cells, return_inverse=True)
+    nodes, cells = nodes[used] - [0, 8, 8], cells.reshape(-1, 4)
+    faces = np.concatenate([cells[:, [0, 2, 1]], cells[:, [0, 1, 3]], cells[:, [1, 2, 3]], cells[:, [0, 3, 2]]])
+    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    outer = faces[np.sort(first[count == 1])]
+    at = nodes[outer]
+    on = lambda axis, value: (np.abs(at[:, :, axis] - value) < 1e-9).all(axis=1)
+    outside = on(0, 0) | on(0, 60) | on(1, -8) | on(1, 8) | on(2, -8) | on(2, 8)
+    return nodes, cells, {"root": outer[on(0, 0)], "chambers": outer[~outside]}
+
+
+def boxes(n, size, keep):
+    """Nodes and tetrahedra of the boxes of a grid that are kept, six each."""
     k, j, i = np.meshgrid(*(np.arange(m + 1) for m in n[::-1]), indexing="ij")
     nodes = np.stack([i.ravel(), j.ravel(), k.ravel()], axis=1) / n * size
     number = lambda i, j, k: (k * (n[1] + 1) + j) * (n[0] + 1) + i
@@ -102,6 +123,8 @@ def block():
     for z in range(n[2]):
         for y in range(n[1]):
             for x in range(n[0]):
+                if not keep(x, y, z):
+                    continue
                 corner = [number(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2 & 1)) for c in range(8)]
                 ring = [1, 3, 2, 6, 4, 5, 1]  # around the diagonal from corner 0 to corner 7
                 for a, b in zip(ring, ring[1:]):
@@ -119,6 +142,22 @@ def write_vtk(path, title, nodes, cells):
         file.write(f"CELLS {len(cells)} {5 * len(cells)}\n")
         file.writelines(f"4 {a} {b} {c} {d}\n" for a, b, c, d in cells)
         file.write(f"CELL_TYPES {len(cells)}\n" + "10\n" * len(cells))
+
+
+def write_msh(path, nodes, cells, groups):
+    """Gmsh 2.2 with a physical group for each list of triangles, and `body` for the tetrahedra."""
+    with open(path, "w", encoding="ascii", newline="\n") as file:
+        file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n")
+        names = [(2, name) for name in groups] + [(3, "body")]
+        file.write(f"{len(names)}\n" + "".join(f'{dim} {k + 1} "{name}"\n' for k, (dim, name) in enumerate(names)))
+        file.write(f"$EndPhysicalNames\n$Nodes\n{len(nodes)}\n")
+        file.writelines(f"{i + 1} {x:g} {y:g} {z:g}\n" for i, (x, y, z) in enumerate(nodes))
+        rows = [(2, k + 1, face) for k, faces in enumerate(groups.values()) for face in faces]
+        rows += [(4, len(names), cell) for cell in cells]
+        file.write(f"$EndNodes\n$Elements\n{len(rows)}\n")
+        for i, (kind, group, own) in enumerate(rows):
+            file.write(f"{i + 1} {kind} 2 {group} {group} {' '.join(str(node + 1) for node in own)}\n")
+        file.write("$EndElements\n")
 
 
 def report(name, nodes, cells):
@@ -150,6 +189,9 @@ def main():
     nodes, cells = block()
     write_vtk(folder / "block.vtk", "Sinew soft block, mm", nodes, cells)
     report("block", nodes, cells)
+    nodes, cells, groups = chambers()
+    write_msh(folder / "chambers.msh", nodes, cells, groups)
+    report("chambers", nodes, cells)
 
 
 if __name__ == "__main__":

@@ -68,16 +68,20 @@ void Raster::add(const std::array<Corner, 3>& corners, const std::array<double, 
 }
 
 bool Raster::outlined(int x, int y, int reach) const {
-  const float behind = at(x, y).depth - kJump;  // (nothing at all is at minus infinity)
   if (x < reach || y < reach || x + reach >= columns_ || y + reach >= rows_) return true;
   const int slant = (reach * 7 + 5) / 10;
   const Sample* here = &at(x, y);
+  // A step, not a slope: beyond what the other side's slope leads to. (Nothing at all is at minus infinity.)
+  const auto steps_down = [&](std::ptrdiff_t way) {
+    const float rise = std::max(0.0f, here[-way].depth - here->depth);
+    return here[way].depth < here->depth - kJump - rise;
+  };
   const std::ptrdiff_t down = static_cast<std::ptrdiff_t>(reach) * columns_;
   const std::ptrdiff_t down_slant = static_cast<std::ptrdiff_t>(slant) * columns_;
-  return here[reach].depth < behind || here[-reach].depth < behind || here[down].depth < behind ||
-         here[-down].depth < behind || here[down_slant + slant].depth < behind ||
-         here[down_slant - slant].depth < behind || here[-down_slant + slant].depth < behind ||
-         here[-down_slant - slant].depth < behind;
+  for (const std::ptrdiff_t way : {std::ptrdiff_t{reach}, down, down_slant + slant, down_slant - slant}) {
+    if (steps_down(way) || steps_down(-way)) return true;
+  }
+  return false;
 }
 
 void Raster::paint(cairo_t* page, const Paint& paint) const {
