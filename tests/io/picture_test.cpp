@@ -295,6 +295,21 @@ TEST_F(Picture, shows_edges_of_cells_and_none_within_their_faces) {
   EXPECT_LT(blue(0.5 * node(9) + 0.5 * node(13) - Vec3(0.001, 0.001, 0)), slope * 3 / 4);
 }
 
+TEST_F(Picture, faces_seen_nearly_edge_on_are_no_outlines) {
+  Raster raster({0, 0, 100, 100}, viridis_palette());  // 40 px deeper with every px to the right, and a rim on the left
+  raster.add({{{{20, 10, 3200}, 1.0, 1.0}, {{90, 10, 400}, 1.0, 1.0}, {{20, 90, 3200}, 1.0, 1.0}}}, {0.0, 0.0, 0.0});
+  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 100, 100);
+  cairo_t* page = cairo_create(surface);
+  raster.paint(page, {});
+  cairo_surface_write_to_png(surface, png_.c_str());
+  cairo_destroy(page);
+  cairo_surface_destroy(surface);
+  const Image image(png_);
+  const auto green = [&image](double x, double y) { return static_cast<int>(image.at(x, y) >> 8 & 255); };
+  EXPECT_GT(green(40, 40), 150);
+  EXPECT_LT(green(20.5, 40), 60);
+}
+
 TEST_F(Picture, rods_alone_are_coloured_by_what_they_moved) {
   Snapshot rest = beam();
   rest.solids.clear();
