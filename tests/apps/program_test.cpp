@@ -281,6 +281,32 @@ TEST(Run, TheExampleToItsEnd_slow) {
   expect_numbers_only(folder / "out");
 }
 
+TEST(Documents, every_scene_in_them_is_sound) {
+  const Folder folder;
+  std::filesystem::create_directory_symlink(examples() / "meshes", folder / "meshes");
+  for (const char* const name : {"rods.md", "solids.md"}) {
+    std::istringstream text(read_file(examples().parent_path() / "docs" / name));
+    int count = 0;
+    std::string block;
+    bool inside = false;
+    for (std::string line; std::getline(text, line);) {
+      if (!inside) {
+        inside = line == "```yaml";
+        block.clear();
+      } else if (line != "```") {
+        block += line + "\n";
+      } else {
+        inside = false;
+        ++count;
+        std::ofstream(folder / "snippet.yaml") << block;
+        const Finished done = sinew({"check", (folder / "snippet.yaml").string()});
+        EXPECT_EQ(done.code, 0) << name << ", block " << count << "\n" << block << said(done);
+      }
+    }
+    EXPECT_GE(count, 4) << name;
+  }
+}
+
 TEST(Examples, AllRunAndLeaveTheirResults) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(examples())) {
