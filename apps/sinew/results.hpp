@@ -18,7 +18,7 @@ struct RunSummary {
   std::vector<std::string> warnings;  ///< of the model and of the run
   std::vector<StageTimes> times;      ///< of each step made by this program; none for recorded ones
   int rotated = 0;                    ///< of those, steps in which the rotated tangent stood in for the exact one
-  int most_inverted = 0;              ///< elements inside out in any step
+  int most_inverted = 0;              ///< of those, most elements flat or inside out in one
   int redundant = 0;                  ///< of those, steps whose rows repeated each other
 };
 

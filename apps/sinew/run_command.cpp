@@ -92,7 +92,8 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
         summary.rotated += report.rotated ? 1 : 0;
         summary.redundant += report.redundant ? 1 : 0;
         unstable = report.unstable;
-        summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
+        if (model.scene.analysis != Analysis::modal)  // (what a mode's picture does is no state)
+          summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
         last = state;
         progress.update(state.time, when(model, state));
         return !interrupted.load();

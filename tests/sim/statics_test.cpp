@@ -175,6 +175,25 @@ TEST(Statics, a_tie_turns_the_way_it_is_turned) {
               2.0 * std::numbers::pi / 3.0 / 0.5, 1e-6);
 }
 
+TEST(Step, a_tie_that_would_turn_over_halves_its_step) {
+  // Twisting the tip by 120 degrees in one step: the rows about the axes hold at -60 degrees, too.
+  Scene scene = test::lone_rod(0.0, 4);
+  scene.time = {1.0, 1.0};
+  scene.rods[0].second.strains.push_back(Strain::elongation);
+  Frame hand;
+  hand.motion = FrameMotion{{0.0, 1.0}, {Vec3::Zero(), Vec3(2.0 * std::numbers::pi / 3.0, 0, 0)}, {}};
+  scene.frames.emplace_back("hand", hand);
+  Tie grip;
+  grip.rod = "rod";
+  grip.frame = "hand";
+  grip.about = {true, true, true};
+  scene.couplings.emplace_back(grip);
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  EXPECT_GT(trace.states.size(), 2u);
+}
+
 /// Pulled by its cable the block by itself is unstable long before the end; the whole is not.
 TEST(Statics, BlockPulledByItsCableEndsWhereItsDampedMotionDoes) {
   Scene scene = test::cable_block(4 * test::mm);

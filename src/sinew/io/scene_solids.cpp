@@ -99,8 +99,10 @@ Type<Solid> solid() {
                      quantity(Dimension::density, above(0.0))),
         field<Solid>({"rayleigh", optional, "its damping", "{mass: 0.1, stiffness: 0.1}"}, &Solid::rayleigh,
                      rayleigh()),
-        field<Solid>({"mass_matrix", optional, "lumped at the nodes, or consistent", "lumped"}, &Solid::mass_matrix,
-                     word_of<solid::MassMatrix>({"lumped", "consistent"})),
+        field<Solid>(
+            {"mass_matrix", optional,
+             "lumped at the nodes, or consistent; none: consistent with 10-node tetrahedra, else lumped", "lumped"},
+            &Solid::mass_matrix, word_of<solid::MassMatrix>({"lumped", "consistent"})),
         field<Solid>({"parts", optional, "regions of another material",
                       "[{group: bone, material: {young: 1 GPa, poisson: 0.3}}]"},
                      &Solid::parts, list<SolidPart>("parts", part(), {1})),

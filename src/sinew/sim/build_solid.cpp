@@ -192,7 +192,10 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   const auto held = hold(scene, solid, path, model);
   if (held.all()) reject(path + ".fixed", "all nodes", "some node must be free", "make the region smaller");
 
-  model.body = solid::make_body(world, mesh.cells, materials, material, held, solid.mass_matrix, solid.mass);
+  const bool quadratic = std::any_of(mesh.cells.begin(), mesh.cells.end(),
+                                     [](const solid::Cell& cell) { return cell.kind == solid::Kind::tet10; });
+  const auto masses = solid.mass_matrix.value_or(quadratic ? solid::MassMatrix::consistent : solid::MassMatrix::lumped);
+  model.body = solid::make_body(world, mesh.cells, materials, material, held, masses, solid.mass);
   model.body.damping_mass = solid.rayleigh.mass;
   model.surface = solid::triangles(model.mesh.boundary);
   for (std::size_t i = 0; i < solid.springs.size(); ++i) {

@@ -139,6 +139,7 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
   }
   free.X = memory.factor.half_solve(right);
   if (kind == solid::Tangent::exact) add_rim(context, memory, iterate, number, free);
+  free.ok = free.Z.allFinite();
   return free;
 }
 

@@ -35,13 +35,13 @@ bool Linearization::finite() const {
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
   if (!factor_solids(kind, failed)) return false;
-  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0 || !conservative()) {
+  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) {
     couple();
     return true;
   }
   const Eigen::MatrixXd W = reduced_.problem.W;  // without the volumes, whose share may have to change
   couple();
-  if (negative_ + coupled_->negative() <= context_.model.rows) return true;
+  if (conservative() && negative_ + coupled_->negative() <= context_.model.rows) return true;
   rotated_ = true;
   if (!factor_solids(solid::Tangent::definite, failed)) return false;
   reduced_.problem.W = W;
@@ -89,10 +89,11 @@ bool Linearization::conservative() const {
   const auto& chains = reduced_.problem.chains;
   return std::all_of(chains.begin(), chains.end(),
                      [](const solve::ChainPart& part) { return part.chain.symmetric(); }) &&
-         std::all_of(loads.begin(), loads.end(), [](const LoadModel& load) {
-           const SolidLoadModel* own = std::get_if<SolidLoadModel>(&load.on);
-           return !own || own->conservative();
-         });
+         std::equal(loads.begin(), loads.end(), context_.command.loads.begin(),
+                    [](const LoadModel& load, double factor) {
+                      const SolidLoadModel* own = std::get_if<SolidLoadModel>(&load.on);
+                      return !own || own->conservative() || factor == 0.0;
+                    });
 }
 
 bool Linearization::unstable() const {

@@ -29,8 +29,8 @@ class Linearization {
 
   /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be. A volume by
   /// itself may be unstable where its couplings hold it (a compressed finger without its cable). Where the whole is,
-  /// too, an iteration that looks for the nearest minimum (`descent`) takes definite tangents instead; one that follows
-  /// a path of equilibria (`any`) does not.
+  /// too, or cannot be judged (forces without a potential), an iteration that looks for the nearest minimum (`descent`)
+  /// takes definite tangents instead; one that follows a path of equilibria (`any`) does not.
   enum class Wanted { descent, any };
   bool factor(solid::Tangent kind, Wanted wanted, std::string& failed);
   /// Factors the coupled problem again with the rods' own stiffness raised by a millionth: next to a limit

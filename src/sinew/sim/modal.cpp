@@ -190,10 +190,19 @@ std::vector<NaturalMode> lanczos_modes(const Coordinates& at, Linearization& her
   Stiffness stiffness(at, here);
   Mass mass(at, equilibrium);
   const int n = static_cast<int>(at.size), wanted = std::min(count, n - 1);
+  if (wanted < 1) {
+    failed = "the scene has a single unknown, too few for the eigenvalue solver";
+    return {};
+  }
   Spectra::SymGEigsShiftSolver<Stiffness, Mass, Spectra::GEigsMode::ShiftInvert> solver(
       stiffness, mass, wanted, std::min(n, 2 * wanted + 20), 0.0);
-  solver.init();
-  solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10);
+  try {
+    solver.init();
+    solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10);
+  } catch (const std::exception&) {  // (of numbers that are none)
+    failed = "the equations about the equilibrium cannot be solved";
+    return {};
+  }
   if (solver.info() != Spectra::CompInfo::Successful || !solver.eigenvalues().allFinite()) {
     failed = "no modes were found: is a body free to move? hold it, or tie it";
     return {};

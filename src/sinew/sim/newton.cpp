@@ -170,6 +170,7 @@ StepReport newton(const ContextAt& at, Workspace& workspace, const NewtonRules& 
       const Eigen::VectorXd& n = rules.across->direction;
       const Model& model = context->model;
       const double dt = -n.dot(measured(model, increment)) / (n.dot(measured(model, change)) + rules.across->rate);
+      if (!std::isfinite(dt)) return fail(Status::singular, "the path has no direction");
       advance_by(*context, change, dt, iterate.state);
       advance_by(*context, increment, 1.0, iterate.state);
       iterate.t += dt;

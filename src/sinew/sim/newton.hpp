@@ -24,7 +24,7 @@ struct NewtonRules {
   int limit = 0;       ///< most rounds
   bool fixed = false;  ///< so many rounds with definite tangents, whatever is left (`newton: 1` of the paper)
   /// Which equilibrium is looked for: the nearest minimum, by steps that are shortened where they lead away from it, or
-  /// any at all, by whole steps.
+  /// any at all, by steps that are only limited to what a linearisation can be trusted for.
   Linearization::Wanted wanted = Linearization::Wanted::descent;
   const AcrossPath* across = nullptr;  ///< t is looked for, too
 };

@@ -132,7 +132,8 @@ struct Solid {
   std::vector<SolidPart> parts;   ///< the last one that has a cell decides
   std::optional<double> mass;     ///< [kg] total, exactly one of mass and density
   std::optional<double> density;  ///< [kg/m^3]
-  solid::MassMatrix mass_matrix = solid::MassMatrix::lumped;
+  /// None: consistent where there are 10-node tetrahedra, whose weight no lumped matrix spreads right; else lumped.
+  std::optional<solid::MassMatrix> mass_matrix = {};
   Rayleigh rayleigh;
   std::vector<Held> fixed;  ///< none needed where springs or couplings hold it
   std::vector<Spring> springs;

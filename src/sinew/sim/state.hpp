@@ -32,10 +32,10 @@ struct PointState {
 
 /// What has been put into the rods and solids since the start [J].
 struct Energies {
-  double work = 0.0;  ///< by motors and loads
+  double work = 0.0;  ///< by motors, loads and supports of solids
 };
 
-/// Where a static analysis stands on its path (sim/statics.hpp).
+/// Where a static analysis stands on its path (sim/statics.hpp); as it is made in other analyses.
 struct PathState {
   double step = 0.0;          ///< arc length to try next
   double rate = 0.0;          ///< last change of the load factor over the arc

@@ -18,6 +18,8 @@ constexpr double kFirstArc = 0.1, kLongestArc = 0.3, kShortestArc = 1e-7;
 constexpr double kArcAtBranch = kFirstArc / 64;
 /// A path that has come back below no load, or takes more steps than this, does not lead to the full one.
 constexpr double kBehindTheStart = -0.05, kMostSteps = 3000;
+/// Of a quasi-static step, whose path is short.
+constexpr int kMostDetours = 200;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 
 /// What is prescribed along a path: all of it grows linearly from one end to the other.
@@ -65,6 +67,14 @@ NewtonRules whole_steps(const Model& model) {
   return {model.scene.newton.limit, false, Linearization::Wanted::any, nullptr};
 }
 
+/// Counts the iterations and the time of a part of a step.
+void add_effort(const StepReport& part, StepReport& whole) {
+  whole.newton += part.newton;
+  for (double StageTimes::*stage : {&StageTimes::forces, &StageTimes::assembly, &StageTimes::factor,
+                                    &StageTimes::compliance, &StageTimes::rods, &StageTimes::solve})
+    whole.times.*stage += part.times.*stage;
+}
+
 /// One step along a path; its arc and what the next one needs are in the state's `path`. On failure `at` is where it
 /// started from.
 Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, const Iterate& from) {
@@ -73,7 +83,7 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
     Reached first = land(model, workspace, ramp, state, {state, 0.0}, whole_steps(model));
     first.at.state.path.step = kFirstArc;
     first.at.state.path.stable = !first.report.unstable;
-    return first;
+    return accepted(first.report.status) ? first : Reached{from, first.report};
   }
   StepReport report;
   if (from.t < kBehindTheStart || state.path.count > kMostSteps) {
@@ -112,6 +122,7 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
   const double norm = std::sqrt(u.squaredNorm() + 1.0);
   const double way = state.path.rate == 0.0 || state.path.direction.dot(u) + state.path.rate > 0.0 ? 1.0 : -1.0;
   const AcrossPath across{way / norm * u, way / norm};
+  StepReport spent = report;
 
   for (double arc = std::min(state.path.step, kLongestArc); arc >= kShortestArc; arc *= 0.5) {
     const bool last = from.t + arc * across.rate >= 1.0;  // land on the end
@@ -124,27 +135,24 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
       rules.across = &across;
     }
     Reached next = land(model, workspace, ramp, state, std::move(guess), rules);
+    add_effort(next.report, spent);
     report = next.report;
     if (!accepted(report.status) || (state.path.stable && report.unstable && arc > kArcAtBranch)) continue;
     PathState& path = next.at.state.path;
     path.count = state.path.count + 1.0;
     path.farthest = std::max(state.path.farthest, next.at.t);
-    path.step =
-        std::min(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0), kLongestArc);
+    path.step = std::clamp(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0),
+                           kShortestArc, kLongestArc);
     path.stable = !report.unstable;
     path.direction = across.direction;
     path.rate = across.rate;
+    next.report.newton = spent.newton;
+    next.report.times = spent.times;
     return next;
   }
+  report.newton = spent.newton;
+  report.times = spent.times;
   return {from, report};
-}
-
-/// Counts the iterations and the time of a part of a step.
-void add_effort(const StepReport& part, StepReport& whole) {
-  whole.newton += part.newton;
-  for (double StageTimes::*stage : {&StageTimes::forces, &StageTimes::assembly, &StageTimes::factor,
-                                    &StageTimes::compliance, &StageTimes::rods, &StageTimes::solve})
-    whole.times.*stage += part.times.*stage;
 }
 
 }  // namespace
@@ -190,25 +198,25 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   StepReport spent = end.report;
   if (!sound(end)) {
     Iterate on{state, 0.0};
-    for (;;) {
+    for (int i = 0; i < kMostDetours && on.t != 1.0; ++i) {
       Reached next = path_step(model, workspace, ramp, on);
       add_effort(next.report, spent);
-      if (!sound(next) || next.at.t < on.t) break;
+      const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
+      if (!sound(next) || back) break;
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
-      if (on.t == 1.0) break;
     }
-    if (on.t < 1.0) {
+    if (on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
       Reached minimum = land(model, workspace, ramp, on.state, guessed(on.state), rules);
       add_effort(minimum.report, spent);
       if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
     }
   }
-  if (!accepted(end.report.status)) return {state, end.report};
-  end.at.state.path = {};
   end.report.newton = spent.newton;
   end.report.times = spent.times;
+  if (!accepted(end.report.status)) return {state, end.report};
+  end.at.state.path = {};
   return {std::move(end.at.state), end.report};
 }
 

@@ -92,8 +92,8 @@ double mass_factor(const Body& body, double rate);
 /// Cells whose volume has vanished or turned inside out at one of their quadrature points.
 std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x);
 
-/// Cauchy stress sigma = P F^T / J [Pa] at a point, with the mean dilatation of its element. NaN where the element is
-/// flat or inside out.
+/// Cauchy stress sigma = P F^T / J [Pa] at a point, with its element's share of the mean dilatation. NaN where the
+/// element is flat or inside out, or a quadrature point is beyond where its law ends.
 Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);
 /// Green-Lagrange strain (F^T F - I) / 2 at a point.
 Mat3 green_strain(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);

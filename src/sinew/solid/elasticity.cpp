@@ -163,6 +163,7 @@ ElementStress::ElementStress(const Law& law, const ElementRest& rest, const Node
 
 Mat3 ElementStress::operator()(const Mat3& F) const {
   const Parts at = parts(law_, F, Derivatives::first);
+  if (!std::isfinite(at.shape.value)) return Mat3::Constant(NAN);
   const double pressure = share_ * volumetric(law_, at.dilatation.value).first + (1.0 - share_) * mean_;
   return at.shape.first + pressure * at.dilatation.first;
 }

@@ -48,15 +48,15 @@ void evaluate(const Law& law, const ElementRest& rest, const NodeVectors& x, Der
 /// Adds Kelvin-Voigt damping of a step of backward Euler, by the Green strains E_0 at its start, nodes at x0: the
 /// potential, with moduli in [Pa s] and rate = 1/h,
 ///     rate sum_q w_q (mu |E - E_0|^2 + lambda / 2 tr^2 (E - E_0)),
-/// its dilatation shared out like U above. Rigid motion of any speed and size leaves it alone, and since it is never
-/// negative, a step that minimises it with the rest never gains energy.
+/// its dilatation shared out like U above. Rigid motion of any speed and size leaves it alone.
 void add_viscosity(const Lame& moduli, double rate, const ElementRest& rest, const NodeVectors& x0,
                    const NodeVectors& x, Derivatives wanted, Tangent kind, ElementResponse& response);
 
 /// F at a quadrature point.
 Mat3 deformation_gradient(const ElementRest& rest, std::size_t q, const NodeVectors& x);
 
-/// First Piola-Kirchhoff stress [Pa] of a law in an element, nodes at x, where the deformation gradient is F.
+/// First Piola-Kirchhoff stress [Pa] of a law in an element, nodes at x, where the deformation gradient is F; NaN where
+/// the law has ended.
 class ElementStress {
  public:
   ElementStress(const Law& law, const ElementRest& rest, const NodeVectors& x);
