@@ -154,10 +154,9 @@ TEST(Statics, APathThatNeverReachesTheLoadEnds) {
   EXPECT_LT(trace.states.size(), 4000u);
 }
 
-TEST(Statics, a_tie_turns_the_way_it_is_turned) {
-  // Twisting the tip by 120 degrees in one step: the rows about the axes hold at -60 degrees, too.
+/// The tip of a rod twisted by 120 degrees in one step: the rows about the axes hold at -60 degrees, too.
+Scene twisted_in_one_step() {
   Scene scene = test::lone_rod(0.0, 4);
-  scene.analysis = Analysis::quasi_static;
   scene.time = {1.0, 1.0};
   scene.rods[0].second.strains.push_back(Strain::elongation);
   Frame hand;
@@ -168,6 +167,12 @@ TEST(Statics, a_tie_turns_the_way_it_is_turned) {
   grip.frame = "hand";
   grip.about = {true, true, true};
   scene.couplings.emplace_back(grip);
+  return scene;
+}
+
+TEST(Statics, a_tie_turns_the_way_it_is_turned) {
+  Scene scene = twisted_in_one_step();
+  scene.analysis = Analysis::quasi_static;
   const Model model = build(scene, test::read_block);
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
@@ -176,19 +181,7 @@ TEST(Statics, a_tie_turns_the_way_it_is_turned) {
 }
 
 TEST(Step, a_tie_that_would_turn_over_halves_its_step) {
-  // Twisting the tip by 120 degrees in one step: the rows about the axes hold at -60 degrees, too.
-  Scene scene = test::lone_rod(0.0, 4);
-  scene.time = {1.0, 1.0};
-  scene.rods[0].second.strains.push_back(Strain::elongation);
-  Frame hand;
-  hand.motion = FrameMotion{{0.0, 1.0}, {Vec3::Zero(), Vec3(2.0 * std::numbers::pi / 3.0, 0, 0)}, {}};
-  scene.frames.emplace_back("hand", hand);
-  Tie grip;
-  grip.rod = "rod";
-  grip.frame = "hand";
-  grip.about = {true, true, true};
-  scene.couplings.emplace_back(grip);
-  const Model model = build(scene, test::read_block);
+  const Model model = build(twisted_in_one_step(), test::read_block);
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
   EXPECT_GT(trace.states.size(), 2u);

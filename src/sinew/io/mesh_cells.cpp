@@ -7,11 +7,6 @@
 namespace sinew::io {
 namespace {
 
-void make_ascending(std::vector<int>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 /// Per cell, the first one that equals it: itself for most.
 std::vector<int> first_equals(const std::vector<solid::Cell>& cells) {
   std::vector<int> sorted(cells.size());
@@ -75,8 +70,8 @@ void add_cell(solid::Mesh& mesh, const FileKind& kind, std::span<const int> node
 void finish_cells(solid::Mesh& mesh) {
   join_repeated(mesh);
   for (auto& [name, group] : mesh.groups) {
-    make_ascending(group.cells);
-    make_ascending(group.nodes);
+    solid::make_ascending(group.cells);
+    solid::make_ascending(group.nodes);
   }
 }
 

@@ -95,10 +95,7 @@ class Inside {
   const double slack_;  ///< [m] of rounding, for nodes on the border of a region
 };
 
-std::set<int> corners(const solid::CellFace& face) {
-  const auto count = static_cast<std::size_t>(face.count == 4 ? 4 : 3);
-  return {face.node.begin(), face.node.begin() + count};
-}
+std::set<int> corners(const solid::CellFace& face) { return {face.corners().begin(), face.corners().end()}; }
 
 /// Cells and boundary faces of a group, by what the file lists: faces, or else those of its cells.
 void listed(const SolidModel& solid, const solid::Group& group, Selection& selection) {

@@ -102,11 +102,9 @@ void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vec
 solid::Material make_material(const SolidMaterial& material, const Solid& solid, const std::string& path) {
   const solid::Lame moduli = solid::lame(material.law);
   if (!(moduli.mu > 0.0 && 3.0 * moduli.lambda + 2.0 * moduli.mu > 0.0 && std::isfinite(moduli.lambda))) {
-    reject(
-        path,
-        "shear modulus " + text(moduli.mu) + " Pa, bulk modulus " + text(moduli.lambda + 2.0 / 3.0 * moduli.mu) + " Pa",
-        "both must be greater than 0 and finite",
-        "give young > 0 and poisson between -1 and 0.5 (0.49 for a nearly incompressible silicone)");
+    reject(path, "shear modulus " + text(moduli.mu) + " Pa, bulk modulus " + text(solid::bulk_modulus(moduli)) + " Pa",
+           "both must be greater than 0 and finite",
+           "give young > 0 and poisson between -1 and 0.5 (0.49 for a nearly incompressible silicone)");
   }
   require_not_negative(material.viscosity, path + ".viscosity", "leave it out for none");
   if (material.density) require_positive(*material.density, path + ".density", "give the density of this material");

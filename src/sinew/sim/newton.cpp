@@ -102,14 +102,13 @@ Eigen::VectorXd measured(const Model& model, const Increment& increment) {
 
 // By a difference in t, exact where all loads are linear in it.
 Increment change_along(const ContextAt& at, Workspace& workspace, const Iterate& iterate, Linearization& here,
-                       StageTimes& times) {
+                       const Increment& own, StageTimes& times) {
   const double e = 1e-6;
   const StepContext ahead = at(iterate.t + e);
   State carried = iterate.state;
   place_held(ahead, carried);
   const Linearization there(ahead, workspace, carried, times);
   Increment change = here.solve(there);
-  const Increment own = here.solve();
   if (!own.reduced.ok) change.reduced.ok = false;
   if (change.reduced.ok) scale_difference(change, own, 1.0 / e);
   return change;
@@ -165,7 +164,7 @@ StepReport newton(const ContextAt& at, Workspace& workspace, const NewtonRules& 
     report.redundant |= increment.reduced.redundant;
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
     if (rules.across) {
-      const Increment change = change_along(at, workspace, iterate, here, report.times);
+      const Increment change = change_along(at, workspace, iterate, here, increment, report.times);
       if (!change.reduced.ok) return fail(Status::singular, "constraint rows and rods");
       const Eigen::VectorXd& n = rules.across->direction;
       const Model& model = context->model;

@@ -36,9 +36,10 @@ using ContextAt = std::function<StepContext(double t)>;
 /// the iterate is where it ended.
 StepReport newton(const ContextAt& at, Workspace& workspace, const NewtonRules& rules, Iterate& iterate);
 
-/// What changes of an equilibrium as t grows: the tangent K u' = -dr/dt of the path.
+/// What changes of an equilibrium as t grows: the tangent K u' = -dr/dt of the path. `own` is the increment `here`
+/// gives.
 Increment change_along(const ContextAt& at, Workspace& workspace, const Iterate& iterate, Linearization& here,
-                       StageTimes& times);
+                       const Increment& own, StageTimes& times);
 
 /// An increment as one vector: what each number turns [rad], or moves in units of the scene's size.
 Eigen::VectorXd measured(const Model& model, const Increment& increment);

@@ -3,28 +3,11 @@
 #include <cmath>
 
 #include "sinew/sim/modal.hpp"
-#include "sinew/sim/places.hpp"
 #include "sinew/sim/statics.hpp"
 
 namespace sinew {
 
-namespace {
-
-/// What the motors are told part of the way to `end`: between where they are and where they shall be. A jump of the
-/// command (a constant from the start, say) is so spread over the parts of a halved step.
-Command command_part(const Model& model, const State& state, Command end, double part) {
-  if (part >= 1.0) return end;
-  const std::vector<double> positions = motor_positions(model, state);
-  for (std::size_t i = 0; i < end.actuators.size(); ++i) {
-    const double now = model.actuators[i].row < 0 ? state.actuators[i] : positions[i];
-    end.actuators[i] = now + part * (end.actuators[i] - now);
-  }
-  for (std::size_t i = 0; i < end.loads.size(); ++i)
-    end.loads[i] = state.loads[i] + part * (end.loads[i] - state.loads[i]);
-  return end;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 StepResult advance(const Model& model, Workspace& workspace, const State& state) {
   if (model.scene.analysis == Analysis::statics) return static_step(model, workspace, state);
@@ -40,7 +23,9 @@ StepResult advance(const Model& model, Workspace& workspace, const State& state)
     if (part > whole * (1.0 + 1e-9)) continue;  // already tried, from further back
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
-    const Command command = command_part(model, state, command_at(model, to), lands ? 1.0 : part / whole);
+    // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
+    Command command = command_at(model, to);
+    if (!lands) command = between(command_of(model, state), command, part / whole);
     const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
     result = equilibrium ? equilibrium_step(model, workspace, command, state, time)
                          : step(model, workspace, command, state, lands ? whole : part);

@@ -38,12 +38,7 @@ Command nothing(const Model& model) {
 /// Contexts along a path from a state.
 ContextAt along(const Model& model, const Ramp& ramp, const State& start) {
   return [&model, &ramp, &start](double t) {
-    const auto mixed = [t](double a, double b) { return a + t * (b - a); };
-    Command command = ramp.from;
-    std::transform(command.actuators.begin(), command.actuators.end(), ramp.to.actuators.begin(),
-                   command.actuators.begin(), mixed);
-    std::transform(command.loads.begin(), command.loads.end(), ramp.to.loads.begin(), command.loads.begin(), mixed);
-    StepContext context = make_context(model, start, command, ramp.time(t) - start.time);
+    StepContext context = make_context(model, start, between(ramp.from, ramp.to, t), ramp.time(t) - start.time);
     context.gravity = ramp.gravity_from + t * (ramp.gravity_to - ramp.gravity_from);
     return context;
   };
@@ -112,10 +107,11 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
   report.status = Status::singular;
   if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail))
     return {from, report};
-  Increment change = change_along(at, workspace, from, here, report.times);
+  const auto tangent = [&] { return change_along(at, workspace, from, here, here.solve(), report.times); };
+  Increment change = tangent();
   if (!change.reduced.ok) {
     here.stiffen();
-    change = change_along(at, workspace, from, here, report.times);
+    change = tangent();
   }
   if (!change.reduced.ok) return {from, report};
   const Eigen::VectorXd u = measured(model, change);
@@ -172,14 +168,12 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
 StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
                             double time) {
   const bool begins = state.grid == 0 && state.time == 0.0;
-  Ramp ramp{nothing(model),      command,    begins ? Vec3(Vec3::Zero()) : model.scene.gravity,
-            model.scene.gravity, state.time, time};
-  if (!begins) {
-    const std::vector<double> positions = motor_positions(model, state);
-    for (std::size_t i = 0; i < model.actuators.size(); ++i)
-      ramp.from.actuators[i] = model.actuators[i].row < 0 ? state.actuators[i] : positions[i];
-    ramp.from.loads = state.loads;
-  }
+  const Ramp ramp{begins ? nothing(model) : command_of(model, state),
+                  command,
+                  begins ? Vec3(Vec3::Zero()) : model.scene.gravity,
+                  model.scene.gravity,
+                  state.time,
+                  time};
   const int folded = count_folded(model, state);
   const auto sound = [&](const Reached& reached) {
     return accepted(reached.report.status) && !reached.report.unstable &&

@@ -1,6 +1,9 @@
 #include "sinew/sim/step.hpp"
 
+#include <cmath>
+
 #include "sinew/sim/newton.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
@@ -14,6 +17,23 @@ Command command_at(const Model& model, double time) {
   for (const ActuatorModel& actuator : model.actuators) command.actuators.push_back(value(actuator.drive));
   for (const LoadModel& load : model.loads) command.loads.push_back(value(load.factor));
   return command;
+}
+
+Command command_of(const Model& model, const State& state) {
+  Command command{state.actuators, state.loads};
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    if (model.actuators[i].row >= 0) command.actuators[i] = motor_position(model, state, model.actuators[i]);
+  }
+  return command;
+}
+
+Command between(Command from, const Command& to, double part) {
+  const auto mix = [part](std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] = std::lerp(a[i], b[i], part);
+  };
+  mix(from.actuators, to.actuators);
+  mix(from.loads, to.loads);
+  return from;
 }
 
 Workspace make_workspace(const Model& model) {

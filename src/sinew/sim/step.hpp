@@ -18,6 +18,10 @@ struct Command {
 
 /// The values of all tables at a time; what is driven from outside gets 0.
 Command command_at(const Model& model, double time);
+/// What a state obeys: the forces and factors it was told, and where its motors are.
+Command command_of(const Model& model, const State& state);
+/// The command that is a part of the way from one to another.
+Command between(Command from, const Command& to, double part);
 
 /// Seconds spent, summed over the iterations of a step.
 struct StageTimes {

@@ -13,7 +13,7 @@ namespace {
 /// The corners of a face in ascending order, the fourth of a triangle -1: the same for both cells that share it.
 std::array<int, 4> key_of(const CellFace& face) {
   std::array<int, 4> key = {-1, -1, -1, -1};
-  std::copy_n(face.node.begin(), face.count == 4 ? 4 : 3, key.begin());
+  std::copy(face.corners().begin(), face.corners().end(), key.begin());
   std::sort(key.begin(), key.end());
   return key;
 }
@@ -23,6 +23,11 @@ Mat3 jacobian(const NodeVectors& nodes, Kind kind, const Vec3& xi) {
 }
 
 }  // namespace
+
+void make_ascending(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
 
 std::vector<CellFace> boundary(const std::vector<Cell>& cells) {
   std::vector<CellFace> all;

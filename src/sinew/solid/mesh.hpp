@@ -25,8 +25,12 @@ struct CellFace {
   int count = 3;
   std::array<int, 6> node{};
   std::span<const int> nodes() const { return {node.data(), static_cast<std::size_t>(count)}; }
+  std::span<const int> corners() const { return {node.data(), count == 4 ? 4U : 3U}; }
   bool operator==(const CellFace&) const = default;
 };
+
+/// Sorts numbers and drops those that are there already.
+void make_ascending(std::vector<int>& numbers);
 
 /// Cells, faces and nodes that a file has given a common name: a physical group of Gmsh, or the number in an integer
 /// array over a VTK file's cells.

@@ -56,11 +56,6 @@ void raise(CellFace& face, const Middles& middle) {
   face = raised;
 }
 
-void make_ascending(std::vector<int>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 using Ends = std::pair<int, int>;  // of an edge
 
 /// The nodes of a group after its cells and faces have been raised. `fresh` are the edges with new nodes, from number

@@ -10,7 +10,7 @@ namespace sinew::solid {
 
 namespace {
 
-Face kind_of(const CellFace& face) { return {face.count == 4 ? 4 : 3, face.count, {0, 1, 2, 3, 4, 5}}; }
+Face kind_of(const CellFace& face) { return {static_cast<int>(face.corners().size()), face.count, {0, 1, 2, 3, 4, 5}}; }
 
 Eigen::Matrix3Xd at_nodes(const CellFace& face, const Eigen::Matrix3Xd& x) {
   Eigen::Matrix3Xd own(3, face.count);
@@ -18,14 +18,14 @@ Eigen::Matrix3Xd at_nodes(const CellFace& face, const Eigen::Matrix3Xd& x) {
   return own;
 }
 
-/// Visits the face's quadrature points with the area each stands for and N there.
+/// Visits the face's quadrature points with the area vector each stands for, along the normal, and N there.
 template <class Visit>
 void each_area(const CellFace& face, const Eigen::Matrix3Xd& x, const Visit& visit) {
   const Face kind = kind_of(face);
   const Eigen::Matrix3Xd own = at_nodes(face, x);
   for (const FacePoint& point : face_quadrature(kind)) {
     const Eigen::Matrix<double, 3, 2> tangents = own * face_slopes(kind, point.xi).transpose();
-    visit(point.weight * tangents.col(0).cross(tangents.col(1)).norm(), face_functions(kind, point.xi));
+    visit(Vec3(point.weight * tangents.col(0).cross(tangents.col(1))), face_functions(kind, point.xi));
   }
 }
 
@@ -33,28 +33,23 @@ void each_area(const CellFace& face, const Eigen::Matrix3Xd& x, const Visit& vis
 
 FaceValues face_shares(const CellFace& face, const Eigen::Matrix3Xd& x) {
   FaceValues shares = FaceValues::Zero(face.count);
-  each_area(face, x, [&](double area, const FaceValues& N) { shares += area * N; });
+  each_area(face, x, [&](const Vec3& area, const FaceValues& N) { shares += area.norm() * N; });
   return shares;
 }
 
 FaceValues lumped_face_shares(const CellFace& face, const Eigen::Matrix3Xd& x) {
   FaceValues shares = FaceValues::Zero(face.count);
   double total = 0.0;
-  each_area(face, x, [&](double area, const FaceValues& N) {
-    shares += area * N.cwiseAbs2();
-    total += area;
+  each_area(face, x, [&](const Vec3& area, const FaceValues& N) {
+    shares += area.norm() * N.cwiseAbs2();
+    total += area.norm();
   });
   return shares * (total / shares.sum());
 }
 
 Eigen::Matrix3Xd pressure_force(const CellFace& face, double p, const Eigen::Matrix3Xd& x) {
-  const Face kind = kind_of(face);
-  const Eigen::Matrix3Xd own = at_nodes(face, x);
   Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, face.count);
-  for (const FacePoint& point : face_quadrature(kind)) {
-    const Eigen::Matrix<double, 3, 2> tangents = own * face_slopes(kind, point.xi).transpose();
-    force -= p * point.weight * tangents.col(0).cross(tangents.col(1)) * face_functions(kind, point.xi).transpose();
-  }
+  each_area(face, x, [&](const Vec3& area, const FaceValues& N) { force -= p * area * N.transpose(); });
   return force;
 }
 
@@ -79,9 +74,9 @@ std::vector<Edge> rim(const std::vector<CellFace>& faces) {
   // An edge with another middle is another curve.
   std::map<std::array<int, 3>, int> found;  // ends in ascending order and middle; how often it runs up, less down
   for (const CellFace& face : faces) {
-    const int corners = face.count == 4 ? 4 : 3;
-    for (int i = 0; i < corners; ++i) {
-      const int a = face.node[i], b = face.node[(i + 1) % corners], middle = face.count == 6 ? face.node[3 + i] : -1;
+    const std::span<const int> corner = face.corners();
+    for (std::size_t i = 0; i < corner.size(); ++i) {
+      const int a = corner[i], b = corner[(i + 1) % corner.size()], middle = face.count == 6 ? face.node[3 + i] : -1;
       found[{std::min(a, b), std::max(a, b), middle}] += a < b ? 1 : -1;
     }
   }
