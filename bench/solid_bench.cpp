@@ -107,8 +107,7 @@ class Cholmod {
 
 /// One numeric factorisation of A by the engine and by CHOLMOD, in turns.
 void factorise(const Matrix& A, Row& row) {
-  linalg::SparseFactor own;
-  own.analyze(A);
+  linalg::SparseFactor own(linalg::SparseFactor::make_plan(A));
   Cholmod cholmod(A);
   std::vector<double> ours, theirs;
   double spent = 0.0;
@@ -153,10 +152,10 @@ Row measure(Kind kind, int cells) {
   const Eigen::Matrix3Xd moved = last.solids[0].x - body.rest;
   row.bend = moved.row(2).maxCoeff() / kSize.x();
 
-  Matrix A = model.solids[0].matrix;
+  linalg::SparseFactor factor(model.solids[0].fronts);
   const StepContext context = make_context(model, last, command_at(model, last.time), 1.0);
-  assemble(model.solids[0], context.solids[0], last.solids[0].x, solid::Tangent::exact, A);
-  factorise(A, row);
+  assemble(model.solids[0], context.solids[0], last.solids[0].x, solid::Tangent::exact, factor.values());
+  factorise(factor.assembled(), row);
   return row;
 }
 

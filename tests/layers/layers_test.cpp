@@ -31,7 +31,7 @@ const Layers kMayInclude = {
     {"lie", {}},
     {"linalg", {}},
     {"rod", {"lie", "linalg"}},
-    {"solid", {"lie"}},
+    {"solid", {"lie", "linalg"}},
     {"constraint", {"lie", "rod", "solid", "linalg"}},
     {"solve", {"linalg"}},
     {"sim", {"error", "lie", "linalg", "rod", "solid", "constraint", "solve"}},

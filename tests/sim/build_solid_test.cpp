@@ -307,9 +307,9 @@ TEST(Springs, are_in_the_tangent) {
   State state = start;
   for (Eigen::Index i = 0; i < state.solids[0].x.size(); ++i)
     state.solids[0].x(i) += 0.02 * std::sin(1.3 * static_cast<double>(i * i + 1));
-  linalg::SparseFactor::Matrix A = solid.matrix;
-  assemble(solid, context.solids[0], state.solids[0].x, solid::Tangent::exact, A);
-  const Eigen::MatrixXd K = Eigen::MatrixXd(A).selfadjointView<Eigen::Lower>();
+  linalg::SparseFactor factor(solid.fronts);
+  assemble(solid, context.solids[0], state.solids[0].x, solid::Tangent::exact, factor.values());
+  const Eigen::MatrixXd K = Eigen::MatrixXd(factor.assembled()).selfadjointView<Eigen::Lower>();
   const auto force = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
     State moved = state;
     moved.solids[0].x = x.reshaped(3, solid.body.nodes());

@@ -55,14 +55,29 @@ Eigen::Matrix3Xd deformed(const Body& body, double size, const Vec3& turn = Vec3
 /// The tangent without the mass, over the coordinates of all nodes, held or not.
 Eigen::MatrixXd dense_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind) {
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * body.nodes(), 3 * body.nodes());
-  assemble_tangent(body, start, x, kind, [&](int cell, const ElementMatrix& own) {
-    const std::span<const int> at = body.cells[static_cast<std::size_t>(cell)].nodes();
-    for (std::size_t a = 0; a < at.size(); ++a) {
-      for (std::size_t b = 0; b < at.size(); ++b)
-        K.block<3, 3>(3 * at[a], 3 * at[b]) +=
-            own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-    }
-  });
+  assemble_tangent(
+      body, start, x, kind,
+      [&](int cell, const ElementMatrix& own) {
+        const std::span<const int> at = body.cells[static_cast<std::size_t>(cell)].nodes();
+        for (std::size_t a = 0; a < at.size(); ++a) {
+          for (std::size_t b = 0; b < at.size(); ++b)
+            K.block<3, 3>(3 * at[a], 3 * at[b]) +=
+                own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+        }
+      },
+      [&](const TetBatch& batch, const TetStiffness& own, unsigned left_out) {
+        for (int i = 0; i < batch.count; ++i) {
+          if (left_out >> i & 1U) continue;
+          for (int a = 0; a < 4; ++a) {
+            for (int b = 0; b <= a; ++b) {
+              Mat3 block;
+              for (int e = 0; e < 9; ++e) block(e) = own.block[a * (a + 1) / 2 + b][e][i];
+              K.block<3, 3>(3 * batch.node[a][i], 3 * batch.node[b][i]) += block;
+              if (a != b) K.block<3, 3>(3 * batch.node[b][i], 3 * batch.node[a][i]) += block.transpose();
+            }
+          }
+        }
+      });
   return K;
 }
 

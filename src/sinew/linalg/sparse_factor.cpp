@@ -1,10 +1,9 @@
 #include "sinew/linalg/sparse_factor.hpp"
 
-#include <metis.h>
-
-#include <Eigen/OrderingMethods>
+#include <algorithm>
 #include <cmath>
-#include <vector>
+#include <stdexcept>
+#include <utility>
 
 namespace sinew::linalg {
 
@@ -13,64 +12,122 @@ namespace {
 /// Below this part of what is rounded nothing is left but rounding.
 constexpr double kVanished = 1e-13;
 
-/// Of size zero where METIS finds none.
-LeastFill::PermutationType nested_dissection(const Eigen::SparseMatrix<double>& full) {
-  std::vector<idx_t> first = {0}, neighbours;  // in the graph of the pattern, without the diagonal
-  for (Eigen::Index j = 0; j < full.cols(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator at(full, j); at; ++at) {
-      if (at.row() != j) neighbours.push_back(static_cast<idx_t>(at.row()));
-    }
-    first.push_back(static_cast<idx_t>(neighbours.size()));
+/// Adds a child's update to its parent: to its panel, and to its update.
+void add_update(const Front& child, std::span<const int> into, const double* from, const Front& parent, double* panel,
+                double* update) {
+  const int below = child.below, borders = child.borders, columns = parent.columns;
+  for (int j = 0; j < below; ++j) {
+    const double* column = from + static_cast<std::ptrdiff_t>(j) * child.update_stride;
+    const bool in_panel = into[j] < columns;
+    const int shift = in_panel ? 0 : columns;  // rows of the update begin after the panel's own
+    double* to = in_panel ? panel + static_cast<std::ptrdiff_t>(into[j]) * parent.stride
+                          : update + static_cast<std::ptrdiff_t>(into[j] - columns) * parent.update_stride;
+    for (int i = j; i < below; ++i) to[into[i] - shift] += column[i];
+    double* border = to + parent.rows() - shift + child.border - parent.border;
+    for (int i = 0; i < borders; ++i) border[i] += column[below + i];
   }
-  auto n = static_cast<idx_t>(full.cols());
-  LeastFill::PermutationType inverse(n);
-  std::vector<idx_t> place(full.cols());
-  const int status =
-      METIS_NodeND(&n, first.data(), neighbours.data(), nullptr, nullptr, inverse.indices().data(), place.data());
-  return status == METIS_OK ? inverse : LeastFill::PermutationType(0);
-}
-
-/// Entries of L after an ordering, by the symbolic half of a factorisation.
-Eigen::Index fill(const Eigen::SparseMatrix<double>& full, const LeastFill::PermutationType& inverse) {
-  struct : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> {
-    Eigen::Index entries() const { return m_matrix.nonZeros(); }
-  } symbolic;
-  Eigen::SparseMatrix<double> ordered;
-  ordered.selfadjointView<Eigen::Lower>() = full.selfadjointView<Eigen::Lower>().twistedBy(inverse.inverse());
-  symbolic.analyzePattern(ordered);
-  return symbolic.entries();
 }
 
 }  // namespace
 
-void LeastFill::operator()(const Eigen::SparseMatrix<double>& full, PermutationType& inverse) const {
-  Eigen::AMDOrdering<int>()(full, inverse);
-  const PermutationType dissected = nested_dissection(full);
-  if (dissected.size() > 0 && fill(full, dissected) < fill(full, inverse)) inverse = dissected;
+std::shared_ptr<const Fronts> SparseFactor::make_plan(const Matrix& pattern, const Rows& border) {
+  return std::make_shared<const Fronts>(
+      plan_fronts({static_cast<int>(pattern.cols()), pattern.outerIndexPtr(), pattern.innerIndexPtr()},
+                  {static_cast<int>(border.rows()), border.outerIndexPtr(), border.innerIndexPtr()}));
 }
 
-bool SparseFactor::factor(const Matrix& A) {
-  if (A.rows() == 0) return true;
-  if (!Eigen::Map<const Eigen::VectorXd>(A.valuePtr(), A.nonZeros()).allFinite()) return false;
-  ldlt_.factorize(A);
-  if (ldlt_.info() != Eigen::Success) return false;
-  const Eigen::VectorXd D = ldlt_.vectorD();
-  const double smallest = D.cwiseAbs().minCoeff();
-  if (!D.allFinite() || !(smallest > 0.0)) return false;
-  signs_ = D.cwiseSign();
-  root_ = D.cwiseAbs().cwiseSqrt().cwiseInverse();
-  negative_ = static_cast<int>((D.array() < 0.0).count());
-  const Eigen::VectorXd diagonal = A.diagonal().cwiseAbs();
-  return smallest > kVanished * diagonal.maxCoeff() || scaled_condition(diagonal) * kVanished < 1.0;
+SparseFactor::SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& kernels)
+    : plan_(std::move(plan)), kernels_(&kernels) {
+  panels_.assign(plan_->panels + kLanes, 0.0);
+  updates_.assign(plan_->updates + kLanes, 0.0);
+  diagonal_.setZero(size());
+  pivots_.setZero(size());
+  signs_.setOnes(size());
+  largest_ = kLanes;
+  for (const Front& front : plan_->fronts)
+    largest_ = std::max(largest_, static_cast<std::size_t>(whole_lanes(front.rows()) + kLanes));
+  minus_W_.setZero(borders() > 0 ? whole_lanes(borders()) + kLanes : 0, borders());
+}
+
+void SparseFactor::clear() { std::fill(panels_.begin(), panels_.end(), 0.0); }
+
+SparseFactor::Matrix SparseFactor::assembled() const {
+  std::vector<int> unknown(plan_->place.size());
+  for (int i = 0; i < size(); ++i) unknown[plan_->place[i]] = i;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Front& front : plan_->fronts) {
+    const std::span<const int> below = plan_->rows_below(front);
+    for (int j = 0; j < front.columns; ++j) {
+      const double* column = panels_.data() + front.panel + static_cast<std::ptrdiff_t>(j) * front.stride;
+      for (int i = j; i < front.rows(); ++i) {
+        const int row = i < front.columns ? front.first + i : below[i - front.columns];
+        const auto [a, b] = std::minmax({unknown[row], unknown[front.first + j]});
+        if (column[i] != 0.0) entries.emplace_back(b, a, column[i]);
+      }
+    }
+  }
+  Matrix A(size(), size());
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+bool SparseFactor::factor(const Matrix& A, const Rows& border) {
+  if (A.cols() != size() || border.rows() != borders())
+    throw std::invalid_argument("SparseFactor: a matrix of another pattern");
+  clear();
+  for (Eigen::Index j = 0; j < A.outerSize(); ++j) {
+    for (Matrix::InnerIterator at(A, j); at; ++at)
+      panels_[plan_->entry(static_cast<int>(at.row()), static_cast<int>(j))] += at.value();
+  }
+  for (Eigen::Index k = 0; k < border.outerSize(); ++k) {
+    for (Rows::InnerIterator at(border, k); at; ++at)
+      panels_[plan_->border_entry(static_cast<int>(k), static_cast<int>(at.col()))] += at.value();
+  }
+  return factor();
+}
+
+bool SparseFactor::factor() {
+  if (size() == 0) return true;
+  for (const Front& front : plan_->fronts) {
+    for (int j = 0; j < front.columns; ++j)
+      diagonal_[front.first + j] = std::abs(panels_[front.panel + static_cast<std::size_t>(j) * (front.stride + 1)]);
+  }
+  if (!factor_fronts()) return false;
+  negative_ = static_cast<int>((pivots_.array() < 0.0).count());
+  return pivots_.cwiseAbs().minCoeff() > kVanished * diagonal_.maxCoeff() || scaled_condition() * kVanished < 1.0;
+}
+
+bool SparseFactor::factor_fronts() {
+  minus_W_.setZero();
+  for (const Front& front : plan_->fronts) {
+    double* panel = panels_.data() + front.panel;
+    double* update = updates_.data() + front.update;
+    const std::span<const int> children = plan_->children_of(front);
+    if (!children.empty()) std::fill_n(update, static_cast<std::size_t>(front.update_stride) * front.below, 0.0);
+    for (const int c : children) {
+      const Front& own = plan_->fronts[c];
+      add_update(own, plan_->rows_in_parent(own), updates_.data() + own.update, front, panel, update);
+    }
+    double* signs = signs_.data() + front.first;
+    if (!kernels_->factor(panel, front.stride, front.columns, front.height(), pivots_.data() + front.first, signs))
+      return false;
+    kernels_->update(update, front.update_stride, panel + front.columns, front.stride, front.below + front.borders,
+                     front.below, front.columns, signs, children.empty());
+    kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
+                     static_cast<int>(minus_W_.outerStride()), panel + front.rows(), front.stride, front.borders,
+                     front.borders, front.columns, signs, false);
+  }
+  return true;
 }
 
 /// Largest eigenvalue of Delta^(1/2) A^-1 Delta^(1/2), Delta the diagonal: how much of a solution is rounding, which
 /// goes with Delta. A slender body beside a stiff spring has pivots that are small beside the spring, and is well;
 /// where a stiff and a soft part float together, what is left of the soft pivots is the rounding of the stiff ones.
-double SparseFactor::scaled_condition(const Eigen::VectorXd& diagonal) const {
-  const Eigen::VectorXd scale = diagonal.cwiseSqrt();
-  Eigen::VectorXd y = Eigen::VectorXd::NullaryExpr(
-      diagonal.size(), [](Eigen::Index i) { return std::sin(1.0 + 0.7 * static_cast<double>(i)); });
+double SparseFactor::scaled_condition() const {
+  Eigen::VectorXd scale(size());  // by unknowns
+  for (int i = 0; i < size(); ++i) scale[i] = std::sqrt(diagonal_[plan_->place[i]]);
+  Eigen::VectorXd y =
+      Eigen::VectorXd::NullaryExpr(size(), [](Eigen::Index i) { return std::sin(1.0 + 0.7 * static_cast<double>(i)); });
   double growth = 1.0;
   for (int i = 0; i < 3; ++i) {  // inverse iteration: the first turn finds the direction but for the square root of n
     y = scale.cwiseProduct(back_solve(half_solve(scale.cwiseProduct(y / y.norm()))));
@@ -80,17 +137,77 @@ double SparseFactor::scaled_condition(const Eigen::VectorXd& diagonal) const {
 }
 
 Eigen::MatrixXd SparseFactor::half_solve(const Eigen::MatrixXd& B) const {
-  if (B.rows() == 0) return B;
-  Eigen::MatrixXd X = ldlt_.permutationP() * B;
-  ldlt_.matrixL().solveInPlace(X);
-  return root_.asDiagonal() * X;
+  Eigen::MatrixXd Y(B.rows(), B.cols());
+  std::vector<double> own(largest_), below(largest_);
+  for (Eigen::Index c = 0; c < B.cols(); ++c) {
+    auto y = Y.col(c);
+    for (int i = 0; i < size(); ++i) y[plan_->place[i]] = B(i, c);
+    for (const Front& front : plan_->fronts) {
+      const double* panel = panels_.data() + front.panel;
+      std::copy_n(&y[front.first], front.columns, own.begin());
+      kernels_->solve(panel, front.stride, front.columns, own.data());
+      std::copy_n(own.begin(), front.columns, &y[front.first]);
+      std::fill_n(below.begin(), whole_lanes(front.below), 0.0);
+      kernels_->multiply(panel + front.columns, front.stride, front.below, front.columns, own.data(), below.data());
+      const std::span<const int> rows = plan_->rows_below(front);
+      for (std::size_t i = 0; i < rows.size(); ++i) y[rows[i]] += below[i];
+    }
+  }
+  return Y;
 }
 
 Eigen::VectorXd SparseFactor::back_solve(const Eigen::VectorXd& y) const {
-  if (y.size() == 0) return y;
-  Eigen::VectorXd x = root_.cwiseProduct(signs_).cwiseProduct(y);
-  ldlt_.matrixU().solveInPlace(x);
-  return ldlt_.permutationPinv() * x;
+  Eigen::VectorXd x = signs_.cwiseProduct(y);
+  std::vector<double> below(largest_);
+  for (auto front = plan_->fronts.rbegin(); front != plan_->fronts.rend(); ++front) {
+    const double* panel = panels_.data() + front->panel;
+    const std::span<const int> rows = plan_->rows_below(*front);
+    for (std::size_t i = 0; i < rows.size(); ++i) below[i] = x[rows[i]];
+    double* own = x.data() + front->first;
+    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below, front->columns, below.data(),
+                                  own);
+    kernels_->solve_transposed(panel, front->stride, front->columns, own);
+  }
+  Eigen::VectorXd solved(y.size());
+  for (int i = 0; i < size(); ++i) solved[i] = x[plan_->place[i]];
+  return solved;
+}
+
+Eigen::MatrixXd SparseFactor::compliance() const {
+  Eigen::MatrixXd W(borders(), borders());
+  for (int i = 0; i < borders(); ++i) {
+    for (int j = 0; j < borders(); ++j) {
+      const auto [column, row] = std::minmax({plan_->border[i], plan_->border[j]});
+      W(i, j) = -minus_W_(row, column);
+    }
+  }
+  return W;
+}
+
+Eigen::MatrixXd SparseFactor::border_times(const Eigen::MatrixXd& Y) const {
+  Eigen::MatrixXd product(borders(), Y.cols());
+  std::vector<double> minus(static_cast<std::size_t>(whole_lanes(borders()) + kLanes));
+  for (Eigen::Index c = 0; c < Y.cols(); ++c) {
+    const Eigen::VectorXd y = Y.col(c);
+    std::fill(minus.begin(), minus.end(), 0.0);
+    for (const Front& front : plan_->fronts) {
+      const double* border = panels_.data() + front.panel + front.rows();
+      kernels_->multiply(border, front.stride, front.borders, front.columns, &y[front.first], &minus[front.border]);
+    }
+    for (int i = 0; i < borders(); ++i) product(i, c) = -minus[plan_->border[i]];
+  }
+  return product;
+}
+
+Eigen::VectorXd SparseFactor::border_transposed_times(const Eigen::VectorXd& u) const {
+  Eigen::VectorXd sorted(borders()), y = Eigen::VectorXd::Zero(size());
+  for (int i = 0; i < borders(); ++i) sorted[plan_->border[i]] = -u[i];
+  for (const Front& front : plan_->fronts) {
+    const double* border = panels_.data() + front.panel + front.rows();
+    kernels_->multiply_transposed(border, front.stride, front.borders, front.columns, sorted.data() + front.border,
+                                  y.data() + front.first);
+  }
+  return signs_.cwiseProduct(y);
 }
 
 }  // namespace sinew::linalg

@@ -1,34 +1,52 @@
 // Factorisation of the sparse symmetric matrices of volumes, P A P^T = L D L^T, D a diagonal of either sign.
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "sinew/linalg/fronts.hpp"
+#include "sinew/linalg/kernels.hpp"
 
 namespace sinew::linalg {
 
-/// Orders the unknowns so that little fills in: by approximate minimum degree or by nested dissection (METIS),
-/// whichever leaves fewer entries in L. An ordering as Eigen's factorisations want it.
-struct LeastFill {
-  using PermutationType = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
-  /// `full`: both triangles. P^-1.
-  void operator()(const Eigen::SparseMatrix<double>& full, PermutationType& inverse) const;
-};
-
-/// The pattern is analysed once (fill-reducing ordering), values are factored every time. Pivots are taken in the order
-/// of the pattern, also of indefinite matrices: good as long as none comes near zero, which `factor` judges.
+/// A plan is made once for a pattern (order of elimination, fronts, all memory), values are factored every time. Pivots
+/// are taken in the order of the pattern, also of indefinite matrices: good as long as none comes near zero, which
+/// `factor` judges.
 ///
-/// With R = |D|^(-1/2) L^-1 P and S the signs of D, A^-1 = R^T S R.
+/// With R = |D|^(-1/2) L^-1 P and S the signs of D, A^-1 = R^T S R. Vectors R b are in the order of elimination.
+/// Border rows H beside A, few and sparse, are eliminated with it: their columns R H^T are nonzero only on the way from
+/// their unknowns to the root of the elimination tree, and only there they cost anything.
 class SparseFactor {
  public:
   using Matrix = Eigen::SparseMatrix<double>;  ///< lower triangle, compressed columns
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  void analyze(const Matrix& pattern) { ldlt_.analyzePattern(pattern); }
+  /// The unknowns of a border row must all meet each other in A; throws std::invalid_argument where they do not.
+  static std::shared_ptr<const Fronts> make_plan(const Matrix& pattern, const Rows& border = {});
+
+  explicit SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& kernels = linalg::kernels());
+
+  /// The numbers of A and H are added in place, between `clear` and `factor`, each at its Fronts::entry.
+  const Fronts& plan() const { return *plan_; }
+  void clear();
+  double* values() { return panels_.data(); }
+  /// A as it has been put together, before it is factored.
+  Matrix assembled() const;
   /// False if rounding is all that is left of a pivot, or it is not finite; solves are then meaningless.
-  bool factor(const Matrix& A);
+  bool factor();
+  /// All of it, for matrices of the plan's patterns.
+  bool factor(const Matrix& A, const Rows& border = {});
+
+  int size() const { return static_cast<int>(plan_->place.size()); }
+  int borders() const { return static_cast<int>(plan_->border.size()); }
+  /// Largest entry of A's diagonal, its size.
+  double largest_diagonal() const { return diagonal_.size() > 0 ? diagonal_.maxCoeff() : 0.0; }
   /// How many eigenvalues are negative (Sylvester).
   int negative() const { return negative_; }
-  /// Entries of L below its diagonal, after `factor`.
-  Eigen::Index entries() const { return ldlt_.matrixL().nestedExpression().nonZeros(); }
+  /// Numbers kept of L below its diagonal, zeros between merged columns included.
+  std::size_t entries() const { return plan_->entries(); }
   /// S, as a vector.
   const Eigen::VectorXd& signs() const { return signs_; }
   /// R B: with X = half_solve(B), B^T A^-1 B = X^T S X.
@@ -36,11 +54,24 @@ class SparseFactor {
   /// R^T S y: the second half, A^-1 b = back_solve(half_solve(b)).
   Eigen::VectorXd back_solve(const Eigen::VectorXd& y) const;
 
- private:
-  double scaled_condition(const Eigen::VectorXd& diagonal) const;
+  /// H A^-1 H^T, in the order of the rows.
+  Eigen::MatrixXd compliance() const;
+  /// H R^T S Y: H A^-1 B for Y = R B.
+  Eigen::MatrixXd border_times(const Eigen::MatrixXd& Y) const;
+  /// R H^T u.
+  Eigen::VectorXd border_transposed_times(const Eigen::VectorXd& u) const;
 
-  Eigen::SimplicialLDLT<Matrix, Eigen::Lower, LeastFill> ldlt_;
-  Eigen::VectorXd signs_, root_;  ///< root_ = |D|^(-1/2)
+ private:
+  bool factor_fronts();
+  double scaled_condition() const;
+
+  std::shared_ptr<const Fronts> plan_;
+  const Kernels* kernels_;
+  std::vector<double> panels_, updates_;
+  Eigen::VectorXd diagonal_;  ///< of A, its size
+  Eigen::VectorXd pivots_, signs_;
+  Eigen::MatrixXd minus_W_;  ///< -H A^-1 H^T below its diagonal, in the order of the plan
+  std::size_t largest_ = 0;  ///< [doubles] that hold any front's unknowns
   int negative_ = 0;
 };
 

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "sinew/sim/building.hpp"
-#include "sinew/sim/solid_matrix.hpp"
 #include "sinew/solid/pressure.hpp"
 
 namespace sinew::building {
@@ -88,7 +87,6 @@ SolidLoadModel on_solid(const Model& model, const SolidLoad& load, const std::st
            "enlarge the region: a face belongs to it with all its nodes, or to a group that lists it or its cell");
   own.pressure = load.pressure;
   own.faces = selection.faces;
-  own.places = face_places(solid, own.faces);
   own.rim = free_rim(model.scene, solid, own.faces);
   return own;
 }

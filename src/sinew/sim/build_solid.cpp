@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "sinew/sim/building.hpp"
-#include "sinew/sim/solid_matrix.hpp"
 #include "sinew/solid/mesh_order.hpp"
 
 namespace sinew::building {
@@ -205,7 +204,6 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
     model.springs +=
         spring.stiffness * shares(model, select_loaded(model, spring.region, own), Spread::lumped).transpose();
   }
-  make_pattern(model);
   return model;
 }
 

@@ -52,9 +52,17 @@ void add_rim(const StepContext& context, const Workspace::Solid& memory, const S
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(model.body.unknowns, N.cols());
   for (std::size_t i = 0; i < unknowns.size(); ++i) P(unknowns[i], static_cast<Eigen::Index>(i)) = 1.0;
   free.Y = memory.factor.half_solve(P);
-  const Eigen::MatrixXd C = free.Y.transpose() * free.signs.asDiagonal() * free.Y;
+  const Eigen::MatrixXd C = free.Y.transpose() * memory.factor.signs().asDiagonal() * free.Y;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
   free.Z = (Eigen::MatrixXd::Identity(N.rows(), N.cols()) + N * C).partialPivLu().solve(N);
+  const Eigen::MatrixXd HY = memory.factor.border_times(free.Y);
+  free.W -= HY * free.Z * HY.transpose();
+}
+
+/// V y.
+Eigen::VectorXd with_rim(const linalg::SparseFactor& factor, const FreeMotion& free, const Eigen::VectorXd& y) {
+  if (free.Y.size() == 0) return y;
+  return y - free.Y * (free.Z * (free.Y.transpose() * factor.signs().cwiseProduct(y)));
 }
 
 }  // namespace
@@ -101,65 +109,55 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
   Workspace::Solid& memory = workspace.solids[number];
   {
     const Clock clock(times.assembly);
-    assemble(model, context.solids[number], iterate.solids[number].x, kind, memory.matrix);
+    memory.factor.clear();
+    double* values = memory.factor.values();
+    for (std::size_t k = 0; k < model.rows.size(); ++k) {
+      if (!is_on(iterate, context.model.solid_rows[model.rows[k]])) continue;
+      const int* first = model.border.outerIndexPtr() + 3 * k;
+      for (int at = first[0]; at < first[3]; ++at) values[model.border_places[at]] = model.border.valuePtr()[at];
+    }
+    assemble(model, context.solids[number], iterate.solids[number].x, kind, values);
     if (kind == solid::Tangent::exact) {
       each_load(context, number, [&](const SolidLoadModel& load, double factor) {
-        add_pressure_tangent(model, load, factor, iterate.solids[number].x, memory.matrix);
+        add_pressure_tangent(model, load, factor, iterate.solids[number].x, values);
       });
     }
   }
   FreeMotion free;
   {
     const Clock clock(times.factor);
-    free.ok = memory.factor.factor(memory.matrix);
+    free.ok = memory.factor.factor();
   }
   if (!free.ok) return free;
   free.negative = memory.factor.negative();
-  free.signs = memory.factor.signs();
 
   const Clock clock(times.compliance);
-  free.stiffness = memory.matrix.diagonal().maxCoeff();
-  const std::vector<SolidRow>& all = context.model.solid_rows;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (all[k].solid == number) free.rows.push_back(static_cast<int>(k));
-  }
-  const auto columns = static_cast<Eigen::Index>(3 * free.rows.size());
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(model.body.unknowns, columns);
-  for (std::size_t k = 0; k < free.rows.size(); ++k) {
-    const SolidRow& row = all[free.rows[k]];
-    if (!is_on(iterate, row)) continue;
-    const std::span<const int> nodes = model.body.cells[row.where.element].nodes();
-    for (std::size_t c = 0; c < nodes.size(); ++c) {
-      for (int i = 0; i < 3; ++i) {
-        const int unknown = model.body.unknown(i, nodes[c]);
-        if (unknown >= 0)
-          right(unknown, static_cast<Eigen::Index>(3 * k) + i) = row.where.weights[static_cast<Eigen::Index>(c)];
-      }
-    }
-  }
-  free.X = memory.factor.half_solve(right);
+  free.stiffness = memory.factor.largest_diagonal();
+  free.W = memory.factor.compliance();
   if (kind == solid::Tangent::exact) add_rim(context, memory, iterate, number, free);
   free.ok = free.Z.allFinite();
   return free;
-}
-
-Eigen::MatrixXd with_rim(const FreeMotion& free, const Eigen::MatrixXd& y) {
-  if (free.Y.size() == 0) return y;
-  return y - free.Y * (free.Z * (free.Y.transpose() * (free.signs.asDiagonal() * y)));
 }
 
 Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b) {
   return workspace.solids[number].factor.half_solve(b);
 }
 
+Eigen::VectorXd border_motion(const Workspace& workspace, const FreeMotion& free, int number,
+                              const Eigen::VectorXd& y) {
+  const linalg::SparseFactor& factor = workspace.solids[number].factor;
+  return factor.border_times(with_rim(factor, free, y));
+}
+
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
                                   Eigen::VectorXd y, int number, const Eigen::VectorXd& dlambda) {
-  const solid::Body& body = context.model.solids[number].body;
-  for (std::size_t k = 0; k < free.rows.size(); ++k) {
-    y += free.X.middleCols<3>(static_cast<Eigen::Index>(3 * k)) *
-         dlambda.segment<3>(context.model.solid_rows[free.rows[k]].row);
-  }
-  return solid::from_unknowns(body, workspace.solids[number].factor.back_solve(with_rim(free, y)));
+  const SolidModel& model = context.model.solids[number];
+  const linalg::SparseFactor& factor = workspace.solids[number].factor;
+  Eigen::VectorXd own(model.border.rows());
+  for (std::size_t k = 0; k < model.rows.size(); ++k)
+    own.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(context.model.solid_rows[model.rows[k]].row);
+  y += factor.border_transposed_times(own);
+  return solid::from_unknowns(model.body, factor.back_solve(with_rim(factor, free, y)));
 }
 
 }  // namespace sinew

@@ -41,25 +41,24 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
 
 /// The volume's linear response, A dx = -r + H^T dlambda, half solved (linalg/sparse_factor): A^-1 = R^T S R, and with
 /// X = R H^T and y = -R r
-///     H dx = X^T S y + X^T S X dlambda,   dx = R^T S (y + X dlambda).
+///     H dx = X^T S y + W dlambda,   W = X^T S X,   dx = R^T S (y + X dlambda).
 /// Follower pressure on a surface with a free rim adds P N P^T to A, N antisymmetric over the rim's unknowns. By
 /// Woodbury's formula S then becomes S V, V = 1 - Y N (1 + Y^T S Y N)^-1 Y^T S with Y = R P.
 struct FreeMotion {
-  Eigen::MatrixXd X;       ///< three columns per solid row of this volume, in the order of `rows`
-  Eigen::VectorXd signs;   ///< S
+  Eigen::MatrixXd W;       ///< H A^-1 H^T: three rows and columns per solid row, in the order of SolidModel::rows
   Eigen::MatrixXd Y, Z;    ///< V = 1 - Y Z Y^T S; empty where A is symmetric
-  std::vector<int> rows;   ///< numbers of the solid rows
   double stiffness = 0.0;  ///< [N/m] largest diagonal entry of A
   int negative = 0;        ///< negative eigenvalues of A: 0 where the volume by itself is stable
   bool ok = false;
 };
-/// V y.
-Eigen::MatrixXd with_rim(const FreeMotion& free, const Eigen::MatrixXd& y);
 FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate, int number,
                        solid::Tangent kind, StageTimes& times);
 
 /// R b with the factor of a volume.
 Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b);
+
+/// H dx of a free motion.
+Eigen::VectorXd border_motion(const Workspace& workspace, const FreeMotion& free, int number, const Eigen::VectorXd& y);
 
 /// Correction: 3 x nodes displacement of the volume (zero where it is held) once the multipliers' increments are known.
 Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,

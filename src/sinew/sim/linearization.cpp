@@ -110,8 +110,10 @@ Increment Linearization::respond(const std::vector<Eigen::VectorXd>& solids, sol
   const Clock clock(times_.solve);
   std::vector<Eigen::VectorXd> y;
   for (std::size_t i = 0; i < free_.size(); ++i) {
-    y.push_back(half_solved(workspace_, static_cast<int>(i), solids[i]));
-    add_free_motion(context_, free_[i], y.back(), side.c);
+    const auto number = static_cast<int>(i);
+    y.push_back(half_solved(workspace_, number, solids[i]));
+    add_free_motion(context_, context_.model.solids[i].rows, border_motion(workspace_, free_[i], number, y.back()),
+                    side.c);
   }
   Increment increment;
   increment.reduced = coupled_->solve(side);

@@ -6,6 +6,7 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/sim/solid_matrix.hpp"
 
 namespace sinew {
 
@@ -231,6 +232,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
   for (std::size_t i = 0; i < model.solids.size(); ++i) check_held(model, static_cast<int>(i));
   count_jumps(model);
+  plan_factors(model);
   measure(model);
   const State start = initial_state(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);

@@ -1,8 +1,10 @@
 // The model: a scene that has been judged, turned into bodies, rows and numbers. Immutable; a step only reads it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -29,20 +31,29 @@ struct PlacedMesh {
   double diagonal = 0.0;                       ///< [m]
 };
 
-/// A volume, where it is attached, and the pattern of its matrix.
+/// Where the 3 x 3 entries of two nodes go in a volume's factor: entry (i, j) at `at` + i + j stride, i and j counted
+/// among the coordinates that are free; with a negative stride at `at` + j - i stride.
+struct BlockPlace {
+  std::uint32_t at = 0;
+  std::int32_t stride = 0;
+};
+
+/// A volume, where it is attached, and how its matrix is factored.
 struct SolidModel {
   std::string name;
   solid::Body body;
   PlacedMesh mesh;
   std::vector<solid::Triangle> surface;
-  int frame = -1;                        ///< number of its frame, -1: the ground
-  std::vector<int> carrier;              ///< per node with held coordinates: number of the frame that holds it
-  Eigen::Matrix3Xd springs;              ///< [N/m] per node and axis
-  linalg::SparseFactor::Matrix matrix;   ///< lower triangle over its unknowns, values zero
-  std::vector<int> places;               ///< in the values: of every element's entries, see sim/solid_matrix
-  std::vector<std::size_t> first_place;  ///< per element
-  std::vector<int> mass_places;          ///< of every entry of the mass matrix's lower triangle, times three axes
-  std::vector<int> diagonal;             ///< of the diagonal
+  int frame = -1;                     ///< number of its frame, -1: the ground
+  std::vector<int> carrier;           ///< per node with held coordinates: number of the frame that holds it
+  Eigen::Matrix3Xd springs;           ///< [N/m] per node and axis
+  std::vector<int> rows;              ///< numbers of the solid rows on it
+  linalg::SparseFactor::Rows border;  ///< H: three rows for each of them, over its unknowns
+  std::shared_ptr<const linalg::Fronts> fronts;
+  std::vector<std::size_t> border_places;  ///< in the factor: of H's entries
+  std::vector<BlockPlace> places;          ///< of every element's blocks on and below its diagonal, row by row
+  std::vector<std::size_t> first_place;    ///< per element
+  std::vector<BlockPlace> mass_places;     ///< of the entries of the mass matrix's lower triangle
   int held() const { return 3 * body.nodes() - body.unknowns; }
 };
 
@@ -148,7 +159,7 @@ struct SolidLoadModel {
   Eigen::Matrix3Xd force;                            ///< [N] per node; empty: none
   double pressure = 0.0;                             ///< [Pa]
   std::vector<solid::CellFace> faces;                ///< under it
-  std::vector<int> places;                           ///< of the faces' tangents in the solid's matrix, face by face
+  std::vector<BlockPlace> places;                    ///< of the faces' tangents in the solid's factor, face by face
   std::vector<int> rim;                              ///< unknowns of the faces' rim where that is free, ascending
   bool conservative() const { return rim.empty(); }  ///< it has a potential, its tangent is symmetric
 };

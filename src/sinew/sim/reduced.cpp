@@ -131,21 +131,21 @@ Reduced linearize(const StepContext& context, const State& iterate) {
 }
 
 void add_compliance(const StepContext& context, const std::vector<FreeMotion>& free, solve::CoupledProblem& problem) {
-  const std::vector<SolidRow>& rows = context.model.solid_rows;
-  for (const FreeMotion& motion : free) {
-    const Eigen::MatrixXd W = motion.X.transpose() * motion.signs.asDiagonal() * with_rim(motion, motion.X);
-    for (std::size_t a = 0; a < motion.rows.size(); ++a) {
-      for (std::size_t b = 0; b < motion.rows.size(); ++b)
-        problem.W.block<3, 3>(rows[motion.rows[a]].row, rows[motion.rows[b]].row) +=
-            W.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+  const std::vector<SolidRow>& all = context.model.solid_rows;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::vector<int>& rows = context.model.solids[i].rows;
+    for (std::size_t a = 0; a < rows.size(); ++a) {
+      for (std::size_t b = 0; b < rows.size(); ++b)
+        problem.W.block<3, 3>(all[rows[a]].row, all[rows[b]].row) +=
+            free[i].W.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
     }
   }
 }
 
-void add_free_motion(const StepContext& context, const FreeMotion& free, const Eigen::VectorXd& y, Eigen::VectorXd& c) {
-  const Eigen::VectorXd Hdx = free.X.transpose() * free.signs.asDiagonal() * with_rim(free, y);
-  for (std::size_t a = 0; a < free.rows.size(); ++a)
-    c.segment<3>(context.model.solid_rows[free.rows[a]].row) += Hdx.segment<3>(static_cast<Eigen::Index>(3 * a));
+void add_free_motion(const StepContext& context, const std::vector<int>& solid_rows, const Eigen::VectorXd& motion,
+                     Eigen::VectorXd& c) {
+  for (std::size_t a = 0; a < solid_rows.size(); ++a)
+    c.segment<3>(context.model.solid_rows[solid_rows[a]].row) += motion.segment<3>(static_cast<Eigen::Index>(3 * a));
 }
 
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

@@ -25,8 +25,9 @@ Reduced linearize(const StepContext& context, const State& iterate);
 /// (11): adds W = H A_x^-1 H^T of all volumes.
 void add_compliance(const StepContext& context, const std::vector<FreeMotion>& free, solve::CoupledProblem& problem);
 
-/// Adds the free motion H dx = X^T y of a volume to the violations c.
-void add_free_motion(const StepContext& context, const FreeMotion& free, const Eigen::VectorXd& y, Eigen::VectorXd& c);
+/// Adds the free motion H dx of a volume to the violations c.
+void add_free_motion(const StepContext& context, const std::vector<int>& solid_rows, const Eigen::VectorXd& motion,
+                     Eigen::VectorXd& c);
 
 /// Moves every reduced unknown and multiplier of an iterate by `fraction` of a solution.
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

@@ -1,52 +1,65 @@
 #include "sinew/sim/solid_matrix.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <string>
 
+#include "sinew/sim/building.hpp"
 #include "sinew/solid/pressure.hpp"
 
 namespace sinew {
 
 namespace {
 
-/// Pairs of unknowns (row >= column) of some nodes, in the order in which places are kept: columns, then rows.
+/// Visits pairs of a cell's or a face's nodes, on and below the diagonal, row by row.
 template <class Visit>
-void each_entry(const solid::Body& body, std::span<const int> nodes, const Visit& visit) {
-  const auto n = static_cast<int>(3 * nodes.size());
-  const auto unknown = [&](int i) { return body.unknown(i % 3, nodes[static_cast<std::size_t>(i / 3)]); };
-  for (int j = 0; j < n; ++j) {
-    const int column = unknown(j);
-    if (column < 0) continue;
-    for (int i = 0; i < n; ++i) {
-      const int row = unknown(i);
-      if (row >= column) visit(i, j, row, column);
-    }
+void each_pair(std::span<const int> nodes, const Visit& visit) {
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    for (std::size_t b = 0; b <= a; ++b) visit(a, b);
   }
 }
 
-/// The same of the mass matrix, with the mass.
+/// Entries of the mass matrix on and below its diagonal, as pairs of nodes.
 template <class Visit>
 void each_mass(const solid::Body& body, const Visit& visit) {
   for (int b = 0; b < body.mass.outerSize(); ++b) {
     for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const int row = body.unknown(axis, at.row()), column = body.unknown(axis, b);
-        if (column >= 0 && row >= column) visit(row, column, at.value());
-      }
+      if (at.row() >= b) visit(static_cast<int>(at.row()), b, at.value());
     }
   }
 }
 
-int place_of(const linalg::SparseFactor::Matrix& A, int row, int column) {
-  const int* begin = A.innerIndexPtr() + A.outerIndexPtr()[column];
-  const int* end = A.innerIndexPtr() + A.outerIndexPtr()[column + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row) - A.innerIndexPtr());
+/// Adds the entries (i, j) of two nodes where both coordinates are free. In a block on the diagonal the upper triangle
+/// is added, too, where nothing reads it.
+template <class Entry>
+void add_block(const solid::Body& body, int row, int column, const BlockPlace& place, const Entry& entry,
+               double* values) {
+  const auto rows = body.unknown.col(row), columns = body.unknown.col(column);
+  double* at = values + place.at;
+  const std::ptrdiff_t down = place.stride > 0 ? 1 : -place.stride, across = place.stride > 0 ? place.stride : 1;
+  if (rows.minCoeff() >= 0 && columns.minCoeff() >= 0) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) at[i * down + j * across] += entry(i, j);
+    }
+    return;
+  }
+  for (int j = 0; j < 3; ++j) {
+    if (columns[j] < 0) continue;
+    double* next = at;
+    at += across;
+    for (int i = 0; i < 3; ++i) {
+      if (rows[i] < 0) continue;
+      *next += entry(i, j);
+      next += down;
+    }
+  }
 }
 
-}  // namespace
+using Pattern = linalg::SparseFactor::Matrix;
 
-void make_pattern(SolidModel& model) {
-  const solid::Body& body = model.body;
+/// The lower triangle over the unknowns: nodes meet that share a cell.
+Pattern pattern_of(const solid::Body& body) {
   // Nodes that share a cell with each node, ascending, each once; unknowns are numbered in the order of the nodes.
   std::vector<std::vector<int>> near(static_cast<std::size_t>(body.nodes()));
   for (const solid::Cell& cell : body.cells) {
@@ -56,11 +69,8 @@ void make_pattern(SolidModel& model) {
       }
     }
   }
-  for (std::vector<int>& own : near) {
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
-  }
-  const auto each_pair = [&](const auto& visit) {
+  for (std::vector<int>& own : near) solid::make_ascending(own);
+  const auto each_entry = [&](const auto& visit) {
     for (int node = 0; node < body.nodes(); ++node) {
       for (int axis = 0; axis < 3; ++axis) {
         const int column = body.unknown(axis, node);
@@ -74,44 +84,104 @@ void make_pattern(SolidModel& model) {
       }
     }
   };
-  linalg::SparseFactor::Matrix& A = model.matrix;
-  A.resize(body.unknowns, body.unknowns);
+  Pattern A(body.unknowns, body.unknowns);
   int* first = A.outerIndexPtr();
-  each_pair([&](int, int column) { ++first[column + 1]; });
+  each_entry([&](int, int column) { ++first[column + 1]; });
   std::partial_sum(first, first + body.unknowns + 1, first);
   A.resizeNonZeros(first[body.unknowns]);
   std::fill_n(A.valuePtr(), A.nonZeros(), 0.0);
   int* at = A.innerIndexPtr();
-  each_pair([&](int row, int) { *at++ = row; });
-
-  const auto place = [&A](int row, int column) { return place_of(A, row, column); };
-  std::size_t most = 0;
-  for (const solid::Cell& cell : body.cells) most += 3 * cell.nodes().size() * (3 * cell.nodes().size() + 1) / 2;
-  model.places.reserve(most);
-  for (int e = 0; e < body.elements(); ++e) {
-    model.first_place.push_back(model.places.size());
-    each_entry(body, body.cells[e].nodes(),
-               [&](int, int, int row, int column) { model.places.push_back(place(row, column)); });
-  }
-  each_mass(body, [&](int row, int column, double) { model.mass_places.push_back(place(row, column)); });
-  for (int i = 0; i < body.unknowns; ++i) model.diagonal.push_back(A.outerIndexPtr()[i]);
+  each_entry([&](int row, int) { *at++ = row; });
+  return A;
 }
 
-std::vector<int> face_places(const SolidModel& model, const std::vector<solid::CellFace>& faces) {
-  std::vector<int> places;
-  for (const solid::CellFace& face : faces)
-    each_entry(model.body, face.nodes(),
-               [&](int, int, int row, int column) { places.push_back(place_of(model.matrix, row, column)); });
-  return places;
+/// H of some solid rows of one volume: how far the point moves per motion of the volume's unknowns.
+linalg::SparseFactor::Rows border_rows(const Model& model, const SolidModel& solid) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < solid.rows.size(); ++k) {
+    const solid::EmbeddedPoint& where = model.solid_rows[static_cast<std::size_t>(solid.rows[k])].where;
+    const std::span<const int> nodes = solid.body.cells[where.element].nodes();
+    for (std::size_t c = 0; c < nodes.size(); ++c) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int unknown = solid.body.unknown(axis, nodes[c]);
+        if (unknown >= 0)
+          entries.emplace_back(static_cast<int>(3 * k) + axis, unknown, where.weights[static_cast<Eigen::Index>(c)]);
+      }
+    }
+  }
+  linalg::SparseFactor::Rows H(static_cast<Eigen::Index>(3 * solid.rows.size()), solid.body.unknowns);
+  H.setFromTriplets(entries.begin(), entries.end());
+  return H;
+}
+
+/// The lowest free coordinate of a node, -1: none.
+int first_unknown(const solid::Body& body, int node) {
+  for (const int unknown : body.unknown.col(node)) {
+    if (unknown >= 0) return unknown;
+  }
+  return -1;
+}
+
+BlockPlace block_place(const SolidModel& solid, int row, int column) {
+  const int one = first_unknown(solid.body, row), other = first_unknown(solid.body, column);
+  if (one < 0 || other < 0) return {};
+  const linalg::Fronts& fronts = *solid.fronts;
+  const bool turned = fronts.place[one] < fronts.place[other];
+  const int stride = fronts.front_of(turned ? one : other).stride;
+  return {static_cast<std::uint32_t>(fronts.entry(one, other)), turned ? -stride : stride};
+}
+
+void plan_factor(Model& model, int number) {
+  SolidModel& solid = model.solids[static_cast<std::size_t>(number)];
+  const solid::Body& body = solid.body;
+  for (std::size_t k = 0; k < model.solid_rows.size(); ++k) {
+    if (model.solid_rows[k].solid == number) solid.rows.push_back(static_cast<int>(k));
+  }
+  solid.border = border_rows(model, solid);
+  solid.fronts = linalg::SparseFactor::make_plan(pattern_of(body), solid.border);
+  if (solid.fronts->panels > std::numeric_limits<std::uint32_t>::max())
+    building::reject("solids." + solid.name, std::to_string(body.unknowns) + " unknowns",
+                     "its factor would take more than 32 GB", "use a coarser mesh");
+  for (int k = 0; k < solid.border.rows(); ++k) {
+    for (linalg::SparseFactor::Rows::InnerIterator at(solid.border, k); at; ++at)
+      solid.border_places.push_back(solid.fronts->border_entry(k, static_cast<int>(at.col())));
+  }
+  const auto add_places = [&](std::span<const int> nodes, std::vector<BlockPlace>& places) {
+    each_pair(nodes, [&](std::size_t a, std::size_t b) { places.push_back(block_place(solid, nodes[a], nodes[b])); });
+  };
+  std::size_t blocks = 0;
+  for (const solid::Cell& cell : body.cells) blocks += cell.nodes().size() * (cell.nodes().size() + 1) / 2;
+  solid.places.reserve(blocks);
+  for (const solid::Cell& cell : body.cells) {
+    solid.first_place.push_back(solid.places.size());
+    add_places(cell.nodes(), solid.places);
+  }
+  each_mass(body, [&](int row, int column, double) { solid.mass_places.push_back(block_place(solid, row, column)); });
+  for (LoadModel& load : model.loads) {
+    SolidLoadModel* const own = std::get_if<SolidLoadModel>(&load.on);
+    if (!own || own->solid != number) continue;
+    for (const solid::CellFace& face : own->faces) add_places(face.nodes(), own->places);
+  }
+}
+
+}  // namespace
+
+void plan_factors(Model& model) {
+  for (std::size_t i = 0; i < model.solids.size(); ++i) plan_factor(model, static_cast<int>(i));
 }
 
 void add_pressure_tangent(const SolidModel& model, const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x,
-                          linalg::SparseFactor::Matrix& A) {
-  const int* place = load.places.data();
+                          double* values) {
+  const BlockPlace* place = load.places.data();
   for (const solid::CellFace& face : load.faces) {
     const Eigen::MatrixXd K = solid::pressure_tangent(face, factor * load.pressure, x);
-    each_entry(model.body, face.nodes(),
-               [&](int i, int j, int, int) { A.valuePtr()[*place++] += 0.5 * (K(i, j) + K(j, i)); });
+    each_pair(face.nodes(), [&](std::size_t a, std::size_t b) {
+      const auto entry = [&](int i, int j) {
+        const auto row = static_cast<Eigen::Index>(3 * a) + i, column = static_cast<Eigen::Index>(3 * b) + j;
+        return 0.5 * (K(row, column) + K(column, row));
+      };
+      add_block(model.body, face.nodes()[a], face.nodes()[b], *place++, entry, values);
+    });
   }
 }
 
@@ -140,24 +210,47 @@ Eigen::MatrixXd pressure_skew(const SolidModel& model, const SolidLoadModel& loa
 }
 
 void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x, solid::Tangent kind,
-              linalg::SparseFactor::Matrix& A) {
-  double* values = A.valuePtr();
-  std::fill(values, values + A.nonZeros(), 0.0);
-  solid::assemble_tangent(model.body, start, x, kind, [&](int cell, const solid::ElementMatrix& own) {
-    const int* place = model.places.data() + model.first_place[static_cast<std::size_t>(cell)];
-    each_entry(model.body, model.body.cells[cell].nodes(),
-               [&](int i, int j, int, int) { values[*place++] += own(i, j); });
+              double* values) {
+  const solid::Body& body = model.body;
+  solid::assemble_tangent(
+      body, start, x, kind,
+      [&](int cell, const solid::ElementMatrix& own) {
+        const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(cell)];
+        const std::span<const int> nodes = body.cells[cell].nodes();
+        each_pair(nodes, [&](std::size_t a, std::size_t b) {
+          const auto block = own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+          add_block(body, nodes[a], nodes[b], *place++, block, values);
+        });
+      },
+      [&](const solid::TetBatch& batch, const solid::TetStiffness& own, unsigned left_out) {
+        for (int i = 0; i < batch.count; ++i) {
+          if (left_out >> i & 1U) continue;
+          const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(batch.cell[i])];
+          int number = 0;
+          for (int a = 0; a < 4; ++a) {
+            for (int b = 0; b <= a; ++b) {
+              const solid::Eight(&block)[9] = own.block[number++];
+              add_block(
+                  body, batch.node[a][i], batch.node[b][i], *place++,
+                  [&block, i](int row, int column) { return block[row + 3 * column][i]; }, values);
+            }
+          }
+        }
+      });
+  const double factor = solid::mass_factor(body, start.rate);
+  const BlockPlace* place = model.mass_places.data();
+  each_mass(body, [&](int row, int column, double mass) {
+    add_block(
+        body, row, column, *place++, [=](int i, int j) { return i == j ? factor * mass : 0.0; }, values);
   });
-  const double factor = solid::mass_factor(model.body, start.rate);
-  const int* place = model.mass_places.data();
-  each_mass(model.body, [&](int, int, double mass) { values[*place++] += factor * mass; });
   if (model.springs.size() == 0) return;
-  for (int node = 0; node < model.body.nodes(); ++node) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const int unknown = model.body.unknown(axis, node);
-      if (unknown >= 0) values[model.diagonal[unknown]] += model.springs(axis, node);
-    }
-  }
+  place = model.mass_places.data();
+  each_mass(body, [&](int row, int column, double) {
+    const BlockPlace& own = *place++;
+    if (row != column) return;
+    add_block(
+        body, row, row, own, [&](int i, int j) { return i == j ? model.springs(i, row) : 0.0; }, values);
+  });
 }
 
 }  // namespace sinew

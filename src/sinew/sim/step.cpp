@@ -38,11 +38,7 @@ Command between(Command from, const Command& to, double part) {
 
 Workspace make_workspace(const Model& model) {
   Workspace workspace;
-  workspace.solids = std::vector<Workspace::Solid>(model.solids.size());
-  for (std::size_t i = 0; i < model.solids.size(); ++i) {
-    workspace.solids[i].matrix = model.solids[i].matrix;
-    workspace.solids[i].factor.analyze(model.solids[i].matrix);
-  }
+  for (const SolidModel& solid : model.solids) workspace.solids.push_back({linalg::SparseFactor(solid.fronts)});
   return workspace;
 }
 

@@ -46,7 +46,6 @@ struct Modes;
 struct Workspace {
   struct Solid {
     linalg::SparseFactor factor;
-    linalg::SparseFactor::Matrix matrix;
   };
   std::vector<Solid> solids;
   std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known

@@ -80,6 +80,31 @@ void add_mass(Body& body, MassMatrix kind, std::optional<double> total) {
   body.masses = body.mass * Eigen::VectorXd::Ones(body.nodes());
 }
 
+/// Gathers the linear tetrahedra of the corotational law.
+void add_batches(Body& body) {
+  for (int e = 0; e < body.elements(); ++e) {
+    const Corotational* const law = std::get_if<Corotational>(&body.of(e).law);
+    if (body.cells[static_cast<std::size_t>(e)].kind != Kind::tet4 || !law) {
+      body.others.push_back(e);
+      continue;
+    }
+    if (body.batches.empty() || body.batches.back().count == kBatch) body.batches.emplace_back();
+    TetBatch& batch = body.batches.back();
+    const int i = batch.count++;
+    const ElementRest rest = body.element(e);
+    const double volume = rest.volumes[0];
+    for (int a = 0; a < 3; ++a) {
+      for (int axis = 0; axis < 3; ++axis) batch.gradient[a][axis][i] = rest.gradients_at(0)(axis, a);
+    }
+    batch.mu[i] = volume * law->moduli.mu;
+    batch.lambda[i] = volume * law->moduli.lambda;
+    batch.viscous_mu[i] = volume * body.of(e).viscosity.mu;
+    batch.viscous_lambda[i] = volume * body.of(e).viscosity.lambda;
+    for (int a = 0; a < 4; ++a) batch.node[a][i] = body.cells[static_cast<std::size_t>(e)].node[a];
+    batch.cell[i] = e;
+  }
+}
+
 }  // namespace
 
 Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Material> materials,
@@ -92,6 +117,7 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
   body.material = std::move(material);
   add_quadrature(body);
   add_mass(body, kind, total);
+  add_batches(body);
   body.unknown.resize(3, body.nodes());
   for (Eigen::Index node = 0; node < body.unknown.cols(); ++node) {
     for (int axis = 0; axis < 3; ++axis) body.unknown(axis, node) = held(axis, node) ? -1 : body.unknowns++;
@@ -133,13 +159,49 @@ bool viscous(const Body& body, int e) {
 
 }  // namespace
 
-Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
-  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, body.nodes());
-  ElementResponse response;
-  for (int e = 0; e < body.elements(); ++e) {
-    evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::first, Tangent::exact, response);
-    scatter(body, e, response.force, force);
+namespace {
+
+void scatter(const TetBatch& batch, int i, const Eight (&own)[4][3], Eigen::Matrix3Xd& force) {
+  for (int a = 0; a < 4; ++a) {
+    for (int axis = 0; axis < 3; ++axis) force(axis, batch.node[a][i]) += own[a][axis][i];
   }
+}
+
+/// Elastic and, where `start` is given, viscous forces of all elements.
+void add_forces(const Body& body, const StepStart* start, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& elastic,
+                Eigen::Matrix3Xd& viscous_forces) {
+  ElementResponse response;
+  const double rate = start ? start->rate : 0.0;
+  const auto add = [&](int e) {
+    evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::first, Tangent::exact, response);
+    scatter(body, e, response.force, elastic);
+    if (rate == 0.0 || !viscous(body, e)) return;
+    response.force.setZero(3, body.element(e).nodes());
+    add_viscosity(body.of(e).viscosity, rate, body.element(e), body.at_nodes(e, start->x), body.at_nodes(e, x),
+                  Derivatives::first, Tangent::exact, response);
+    scatter(body, e, response.force, viscous_forces);
+  };
+  const TetKernels& kernels = tet_kernels();
+  TetForces own;
+  for (const TetBatch& batch : body.batches) {
+    const unsigned left_out = kernels.forces(batch, x.data(), rate > 0.0 ? start->x.data() : nullptr, rate, own);
+    for (int i = 0; i < batch.count; ++i) {
+      if (left_out >> i & 1U) {
+        add(batch.cell[i]);
+        continue;
+      }
+      scatter(batch, i, own.elastic, elastic);
+      if (rate > 0.0) scatter(batch, i, own.viscous, viscous_forces);
+    }
+  }
+  for (const int e : body.others) add(e);
+}
+
+}  // namespace
+
+Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
+  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, body.nodes()), none;
+  add_forces(body, nullptr, x, force, none);
   return force;
 }
 
@@ -156,16 +218,8 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
 Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
                           double* scale) {
   const Eigen::Matrix3Xd v = (x - start.x) * start.rate;
-  const Eigen::Matrix3Xd elastic = elastic_force(body, x);
-  Eigen::Matrix3Xd damping = Eigen::Matrix3Xd::Zero(3, body.nodes());
-  ElementResponse response;
-  for (int e = 0; e < body.elements() && start.rate > 0.0; ++e) {
-    if (!viscous(body, e)) continue;
-    response.force.setZero(3, body.element(e).nodes());
-    add_viscosity(body.of(e).viscosity, start.rate, body.element(e), body.at_nodes(e, start.x), body.at_nodes(e, x),
-                  Derivatives::first, Tangent::exact, response);
-    scatter(body, e, response.force, damping);
-  }
+  Eigen::Matrix3Xd elastic = Eigen::Matrix3Xd::Zero(3, body.nodes()), damping = elastic;
+  add_forces(body, &start, x, elastic, damping);
   const Eigen::Matrix3Xd inertia = ((v - start.v) * start.rate + body.damping_mass * v) * body.mass;
   const Eigen::Matrix3Xd weight = gravity * body.masses.transpose();
   if (scale)
@@ -175,15 +229,26 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
 }
 
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
-                      const InsertElement& insert) {
+                      const InsertElement& insert, const InsertBatch& insert_batch) {
   ElementResponse response;
-  for (int e = 0; e < body.elements(); ++e) {
+  const auto add = [&](int e) {
     evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::second, kind, response);
     if (start.rate > 0.0 && viscous(body, e))
       add_viscosity(body.of(e).viscosity, start.rate, body.element(e), body.at_nodes(e, start.x), body.at_nodes(e, x),
                     Derivatives::second, kind, response);
     insert(e, response.stiffness);
+  };
+  const TetKernels& kernels = tet_kernels();
+  TetStiffness stiffness;
+  for (const TetBatch& batch : body.batches) {
+    const bool definite = kind == Tangent::definite;  // the exact one has a turning rotation, too
+    const unsigned left_out = definite ? kernels.stiffness(batch, x.data(), start.rate, stiffness) : ~0U;
+    if (definite) insert_batch(batch, stiffness, left_out);
+    for (int i = 0; i < batch.count; ++i) {
+      if (left_out >> i & 1U) add(batch.cell[i]);
+    }
   }
+  for (const int e : body.others) add(e);
 }
 
 double mass_factor(const Body& body, double rate) { return (rate + body.damping_mass) * rate; }

@@ -9,6 +9,7 @@
 #include "sinew/solid/elasticity.hpp"
 #include "sinew/solid/embedding.hpp"
 #include "sinew/solid/mesh.hpp"
+#include "sinew/solid/tet_batch.hpp"
 
 namespace sinew::solid {
 
@@ -36,6 +37,9 @@ struct Body {
   double damping_mass = 0.0;         ///< Rayleigh's alpha [1/s]
   Eigen::Matrix3Xi unknown;          ///< per node and axis: number among the unknowns, or -1 where it is held
   int unknowns = 0;
+
+  std::vector<TetBatch> batches;  ///< the corotational linear tetrahedra, in the order of their numbers
+  std::vector<int> others;        ///< all other cells
 
   int nodes() const { return static_cast<int>(rest.cols()); }
   int elements() const { return static_cast<int>(cells.size()); }
@@ -78,13 +82,14 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
                           double* scale = nullptr);
 
-/// Takes the matrix of one element, 3n x 3n.
+/// Take the matrix of one element, 3n x 3n, and those of a batch, without the elements in the bits of `left_out`.
 using InsertElement = std::function<void(int cell, const ElementMatrix& matrix)>;
+using InsertBatch = std::function<void(const TetBatch& batch, const TetStiffness& stiffness, unsigned left_out)>;
 
 /// The matrix of (10) divided by h, A = M (1 + a h) / h^2 + d'(x) + K(x), but for its mass, element by element.
 /// mass_factor() times Body::mass is what is missing.
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
-                      const InsertElement& insert);
+                      const InsertElement& insert, const InsertBatch& insert_batch);
 
 /// (1 / h + a) / h.
 double mass_factor(const Body& body, double rate);

@@ -102,9 +102,25 @@ CoupledFactor::CoupledFactor(const CoupledProblem& problem) : problem_(problem) 
   for (std::size_t i = 0; i < problem.chains.size() && ok; ++i) ok = factors_[i].factor(problem.chains[i].chain);
   if (ok) {
     eliminate_chains();
+    factor_symmetric();
   } else {
     join_chains();
   }
+}
+
+void CoupledFactor::factor_symmetric() {
+  if (K_.rows() == 0 || !K_.allFinite() || !K_.isApprox(K_.transpose(), 1e-12)) return;
+  // Rows that feel a compliance have negative pivots, what they hold then positive ones; the rest are rows again.
+  std::vector<int> order;
+  const auto nz = static_cast<int>(problem_.B.rows()), all = static_cast<int>(K_.rows());
+  const auto yields = [this](int row) { return K_(row, row) < 0.0; };
+  for (int i = nz; i < all; ++i)
+    if (yields(i)) order.push_back(i);
+  for (int i = 0; i < nz; ++i) order.push_back(i);
+  for (int i = nz; i < all; ++i)
+    if (!yields(i)) order.push_back(i);
+  symmetric_ = std::make_unique<linalg::SymmetricFactor>();
+  if (!symmetric_->factor(K_, order)) symmetric_.reset();
 }
 
 void CoupledFactor::eliminate_chains() {
@@ -183,7 +199,7 @@ CoupledSolution CoupledFactor::solve_once(const RightSide& right) const {
     y = cod.solve(b);
     solution.redundant = true;
   } else if (b.size() > 0) {
-    y = lu_->solve(b);
+    y = symmetric_ ? symmetric_->solve(b) : lu_->solve(b);
   }
   y.array() *= scale_.array();
   solution.dz = y.head(nz);
@@ -262,7 +278,7 @@ CoupledSolution CoupledFactor::solve(const RightSide& right) {
       join_chains();
       continue;
     }
-    if (!lu_ && K_.rows() > 0) {
+    if (!symmetric_ && !lu_ && K_.rows() > 0) {
       lu_ = std::make_unique<Eigen::PartialPivLU<Eigen::MatrixXd>>(K_);
       const Eigen::VectorXd pivots = lu_->matrixLU().diagonal().cwiseAbs();
       singular_ = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff()) || !(lu_->rcond() > 1e-15);
@@ -283,7 +299,9 @@ CoupledSolution CoupledFactor::solve(const RightSide& right) {
     solution.redundant = singular_;
     solution.ok = solution.residual < (singular_ ? 1e-6 : kTolerance);
     if (solution.ok) return solution;
-    if (!singular_ && (written_out || problem_.chains.empty())) {
+    if (symmetric_) {
+      symmetric_.reset();
+    } else if (!singular_ && (written_out || problem_.chains.empty())) {
       singular_ = true;  // its LU says it is not, its residual that it is
     } else if (!written_out && !problem_.chains.empty()) {
       join_chains();
@@ -297,6 +315,7 @@ CoupledSolution CoupledFactor::solve(const RightSide& right) {
 int CoupledFactor::negative() const {
   int count = 0;
   for (const linalg::ChainFactor& factor : factors_) count += factor.negative();
+  if (symmetric_) return count + symmetric_->negative();
   if (K_.rows() == 0 || !K_.allFinite()) return count;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
   return count + static_cast<int>((border.eigenvalues().array() < 0.0).count());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/linalg/chain.hpp"
+#include "sinew/linalg/symmetric_factor.hpp"
 
 namespace sinew::solve {
 
@@ -54,22 +55,24 @@ struct CoupledSolution {
   double residual = 0.0;            ///< largest relative residual of the scaled equations
 };
 
-/// Factors once, solves often. Chains are eliminated in time proportional to their length; the border is a dense LU,
-/// scaled so that rows of different units weigh alike, with one refinement. Where a chain has no good pivots (strains
-/// that nothing but the constraints hold), it joins the border; where the border is singular, a complete orthogonal
-/// decomposition takes over.
+/// Factors once, solves often. Chains are eliminated in time proportional to their length; the border is dense, scaled
+/// so that rows of different units weigh alike, and its solutions are refined once. A symmetric border is factored as
+/// such, the rows that feel a compliance first; where that is not good enough, by an LU. Where a chain has no good
+/// pivots (strains that nothing but the constraints hold), it joins the border; where the border is singular, a
+/// complete orthogonal decomposition takes over.
 class CoupledFactor {
  public:
   explicit CoupledFactor(const CoupledProblem& problem);
   CoupledSolution solve(const RightSide& right);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
-  /// no more of them than rows. Costs an eigenvalue problem of the border.
+  /// no more of them than rows. Costs an eigenvalue problem of the border where that has no symmetric factor.
   int negative() const;
 
  private:
   void eliminate_chains();
   void join_chains();
+  void factor_symmetric();
   CoupledSolution solve_once(const RightSide& right) const;
   /// Right side minus matrix times solution, and the largest relative entry.
   RightSide residual(const RightSide& right, const CoupledSolution& solution, double& relative) const;
@@ -78,7 +81,8 @@ class CoupledFactor {
   std::vector<linalg::ChainFactor> factors_;  ///< empty when the chains are written out
   Eigen::MatrixXd K_;                         ///< scaled border
   Eigen::VectorXd scale_;
-  std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
+  std::unique_ptr<linalg::SymmetricFactor> symmetric_;        ///< the border's, where it serves
+  std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;  ///< or else this
   bool singular_ = false;
 };
 

@@ -1,0 +1,69 @@
+// How a sparse symmetric matrix is eliminated: which unknowns go together, in which order, and where everything is
+// kept. Decided once per pattern (README.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sinew/linalg/ordering.hpp"
+
+namespace sinew::linalg {
+
+/// Unknowns that are eliminated together, and what they meet. Its panel has the rows: its own unknowns, those below
+/// (later ones that they meet), then the border rows that reach it. Its update is what the panel does to the last two.
+struct Front {
+  int first = 0, columns = 0;   ///< its own: positions first .. before first + columns in the order of elimination
+  int below = 0;                ///< how many below
+  int border = 0, borders = 0;  ///< first border row that reaches it, and how many (sorted)
+  int parent = -1;              ///< the front its update goes to
+  int stride = 0, update_stride = 0;  ///< [doubles] from one column to the next, of panel and update
+  std::size_t panel = 0, update = 0;  ///< where they begin
+  std::size_t index = 0;              ///< where its lists begin in `below` and `into`
+  std::size_t first_child = 0;        ///< where its children begin in `children`
+  int child_count = 0;
+
+  int rows() const { return columns + below; }
+  int height() const { return rows() + borders; }
+};
+
+struct Fronts {
+  std::vector<int> place;     ///< of each unknown in the order of elimination
+  std::vector<int> border;    ///< of each border row in the order in which they are kept
+  std::vector<Front> fronts;  ///< children before parents, each one's descendants just before it
+  std::vector<int> below;     ///< positions of the rows below, ascending
+  std::vector<int> into;      ///< and which row of the parent each one is
+  std::vector<int> children;
+  std::size_t panels = 0, updates = 0;  ///< [doubles] that all panels take, and all updates alive at one time
+
+  std::span<const int> rows_below(const Front& front) const {
+    return {below.data() + front.index, static_cast<std::size_t>(front.below)};
+  }
+  std::span<const int> rows_in_parent(const Front& front) const {
+    return {into.data() + front.index, static_cast<std::size_t>(front.below)};
+  }
+  std::span<const int> children_of(const Front& front) const {
+    return {children.data() + front.first_child, static_cast<std::size_t>(front.child_count)};
+  }
+  /// Where the entry of two unknowns that meet is in the panels, and that of a border row and one of its unknowns. Take
+  /// a search each: for when a model is built.
+  std::size_t entry(int one, int other) const;
+  std::size_t border_entry(int row, int unknown) const;
+  const Front& front_of(int unknown) const;
+  double work() const;          ///< multiplications of a numeric factorisation, border rows included
+  std::size_t entries() const;  ///< of L below its diagonal, zeros of merged fronts included
+};
+
+/// Compressed columns, or rows, of a sparse matrix.
+struct Compressed {
+  int size = 0;
+  const int* first = nullptr;
+  const int* index = nullptr;
+};
+
+/// `lower`: columns of the lower triangle. `border`: rows of a matrix beside it; the unknowns of a row must all meet
+/// each other, like the nodes of an element. Throws std::invalid_argument where they do not.
+Fronts plan_fronts(const Compressed& lower, const Compressed& border);
+
+}  // namespace sinew::linalg

@@ -1,0 +1,38 @@
+// The dense work of a factorisation, in registers as wide as the processor has. README.md says what they compute.
+#pragma once
+
+namespace sinew::linalg {
+
+/// Registers hold 2, 4 or 8 doubles. Tails of columns are worked on as if there were as many rows as fill eight, so
+/// that many must be there to be read, and where a kernel adds to them to be written: strides are multiples of eight.
+inline constexpr int kLanes = 8;
+constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
+
+/// One set of kernels, for matrices by columns; a stride is the way from one column to the next.
+struct Kernels {
+  const char* name;
+
+  /// Factors a panel of `columns` columns, P <- L |D|^(1/2) where P = L D [its upper part]^T and L has ones on its
+  /// diagonal. Above the diagonal anything is left. False where a pivot, an entry of D, is zero or not finite.
+  bool (*factor)(double* panel, int stride, int columns, int height, double* pivots, double* signs);
+
+  /// C <- C - A S A^T, or -A S A^T where C is `fresh`: its first `columns` columns from the diagonal down to `height`;
+  /// beside the diagonal anything is left above it. A is height x depth, `signs` the diagonal of S.
+  void (*update)(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
+                 const double* signs, bool fresh);
+
+  /// y <- P^-1 y and x <- P^-T x with the square on top of a factored panel.
+  void (*solve)(const double* panel, int stride, int columns, double* y);
+  void (*solve_transposed)(const double* panel, int stride, int columns, double* x);
+
+  /// y <- y - A x (y: whole lanes of `height`) and x <- x - A^T y, A: height x columns.
+  void (*multiply)(const double* A, int stride, int height, int columns, const double* x, double* y);
+  void (*multiply_transposed)(const double* A, int stride, int height, int columns, const double* y, double* x);
+};
+
+/// The fastest that runs on this processor.
+const Kernels& kernels();
+/// By name (linalg/processor); null where it does not run here.
+const Kernels* kernels(const char* name);
+
+}  // namespace sinew::linalg

@@ -1,0 +1,244 @@
+// Compiled once for each width of registers: SINEW_LANES doubles, under the name SINEW_KERNELS. It includes nothing of
+// others, so that no function of theirs is compiled for a processor that may not be there.
+#include "sinew/linalg/kernels.hpp"
+
+namespace sinew::linalg {
+
+extern const Kernels SINEW_KERNELS;
+
+namespace {
+
+constexpr int kWidth = SINEW_LANES;  ///< doubles in a register
+using Lanes [[gnu::vector_size(8 * SINEW_LANES), gnu::aligned(8), gnu::may_alias]] = double;
+
+Lanes load(const double* p) { return *reinterpret_cast<const Lanes*>(p); }
+void store(double* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
+
+/// A tile of C that stays in registers: so many of them down, so many columns across.
+constexpr int kDown = kWidth == 8 ? 3 : kWidth == 4 ? 3 : 4;
+constexpr int kAcross = kWidth == 8 ? 8 : kWidth == 4 ? 4 : 2;
+
+struct Product {
+  const double *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
+  int stride, depth;
+  const double* signs;  ///< null: all positive
+};
+
+/// C <- C - A S B^T or -A S B^T, for one tile.
+template <int down, int across, bool turned>
+void tile(double* C, int stride, const Product& product, bool fresh) {
+  Lanes sum[across][down];
+#pragma GCC unroll 8
+  for (int j = 0; j < across; ++j) {
+#pragma GCC unroll 8
+    for (int i = 0; i < down; ++i) sum[j][i] = Lanes{};
+  }
+  const double *A = product.A, *B = product.B;
+  for (int k = 0; k < product.depth; ++k, A += product.stride, B += product.stride) {
+    Lanes a[down];
+#pragma GCC unroll 8
+    for (int i = 0; i < down; ++i) a[i] = load(A + kWidth * i);
+#pragma GCC unroll 8
+    for (int j = 0; j < across; ++j) {
+      const double b = turned ? B[j] * product.signs[k] : B[j];
+#pragma GCC unroll 8
+      for (int i = 0; i < down; ++i) sum[j][i] -= a[i] * b;
+    }
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < across; ++j) {
+    double* c = C + static_cast<long>(j) * stride;
+#pragma GCC unroll 8
+    for (int i = 0; i < down; ++i) store(c + kWidth * i, fresh ? sum[j][i] : load(c + kWidth * i) + sum[j][i]);
+  }
+}
+
+/// The same for `rows` (whole registers) of `across` columns.
+template <int across, bool turned>
+void strip(double* C, int stride, const Product& product, int rows, bool fresh) {
+  int row = 0;
+  const auto tiles = [&]<int down>() {
+    for (; row + kWidth * down <= rows; row += kWidth * down) {
+      const Product own{product.A + row, product.B, product.stride, product.depth, product.signs};
+      tile<down, across, turned>(C + row, stride, own, fresh);
+    }
+  };
+  tiles.template operator()<kDown>();
+  tiles.template operator()<1>();
+}
+
+/// C <- C - A S A^T as in Kernels::update; rows and columns of C begin with the row `top` of A.
+template <bool turned>
+void rank_update(double* C, int C_stride, Product product, int height, int columns, bool fresh) {
+  const double* A = product.A;
+  int j = 0;
+  const auto strips = [&]<int across>() {
+    for (; j + across <= columns; j += across) {
+      const int top = j / kWidth * kWidth;
+      product.A = A + top;
+      product.B = A + j;
+      const int rows = (height - top + kWidth - 1) / kWidth * kWidth;
+      strip<across, turned>(C + static_cast<long>(j) * C_stride + top, C_stride, product, rows, fresh);
+    }
+  };
+  strips.template operator()<kAcross>();
+  if constexpr (kAcross > 4) strips.template operator()<4>();
+  if constexpr (kAcross > 2) strips.template operator()<2>();
+  strips.template operator()<1>();
+}
+
+void update(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
+            const double* signs, bool fresh) {
+  bool positive = true;
+  for (int k = 0; k < depth; ++k) positive &= signs[k] > 0.0;
+  const Product product{A, A, A_stride, depth, signs};
+  if (positive) {
+    rank_update<false>(C, C_stride, product, height, columns, fresh);
+  } else {
+    rank_update<true>(C, C_stride, product, height, columns, fresh);
+  }
+}
+
+constexpr int kBlock = 8;  ///< columns of a panel that are factored together
+
+/// Columns to the right of each other on the same rows: X <- X U^-1, U[i][j] = signs[i] P[j, i].
+template <int columns>
+void divide(double* P, int stride, int rows, const double (&U)[kBlock][kBlock], const double* inverse) {
+  for (int r = 0; r < rows; r += kWidth) {
+    Lanes x[columns];
+#pragma GCC unroll 8
+    for (int j = 0; j < columns; ++j) {
+      x[j] = load(P + static_cast<long>(j) * stride + r);
+#pragma GCC unroll 8
+      for (int i = 0; i < j; ++i) x[j] -= x[i] * U[i][j];
+      x[j] *= inverse[j];
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j < columns; ++j) store(P + static_cast<long>(j) * stride + r, x[j]);
+  }
+}
+
+void divide(int columns, double* P, int stride, int rows, const double (&U)[kBlock][kBlock], const double* inverse) {
+  switch (columns) {
+    case 1:
+      return divide<1>(P, stride, rows, U, inverse);
+    case 2:
+      return divide<2>(P, stride, rows, U, inverse);
+    case 3:
+      return divide<3>(P, stride, rows, U, inverse);
+    case 4:
+      return divide<4>(P, stride, rows, U, inverse);
+    case 5:
+      return divide<5>(P, stride, rows, U, inverse);
+    case 6:
+      return divide<6>(P, stride, rows, U, inverse);
+    case 7:
+      return divide<7>(P, stride, rows, U, inverse);
+    default:
+      return divide<8>(P, stride, rows, U, inverse);
+  }
+}
+
+bool factor(double* panel, int stride, int columns, int height, double* pivots, double* signs) {
+  for (int first = 0; first < columns; first += kBlock) {
+    const int count = columns - first < kBlock ? columns - first : kBlock;
+    double* block = panel + static_cast<long>(first) * stride + first;
+    if (first > 0) update(block, stride, panel + first, stride, height - first, count, first, signs, false);
+    // The square on the diagonal is factored apart; all rows, its own too, are then divided by it.
+    double square[kBlock][kBlock], U[kBlock][kBlock], inverse[kBlock];
+    for (int j = 0; j < count; ++j) {
+      for (int r = j; r < count; ++r) {
+        square[j][r] = block[static_cast<long>(j) * stride + r];
+        for (int i = 0; i < j; ++i) square[j][r] -= square[i][r] * U[i][j];
+      }
+      const double d = square[j][j], size = __builtin_fabs(d);
+      if (!(size > 0.0) || !(size <= __DBL_MAX__)) return false;
+      const double sign = d < 0.0 ? -1.0 : 1.0;
+      pivots[first + j] = d;
+      signs[first + j] = sign;
+      inverse[j] = sign / __builtin_sqrt(size);
+      for (int r = j; r < count; ++r) {
+        square[j][r] *= inverse[j];
+        U[j][r] = sign * square[j][r];
+      }
+    }
+    divide(count, block, stride, (height - first + kWidth - 1) / kWidth * kWidth, U, inverse);
+  }
+  return true;
+}
+
+void multiply(const double* A, int stride, int height, int columns, const double* x, double* y) {
+  constexpr int kRows = 4;  // registers
+  const auto rows = [&]<int count>(int at) {
+    Lanes sum[count];
+    for (int i = 0; i < count; ++i) sum[i] = load(y + at + kWidth * i);
+    for (int k = 0; k < columns; ++k) {
+      const double* a = A + static_cast<long>(k) * stride + at;
+      for (int i = 0; i < count; ++i) sum[i] -= load(a + kWidth * i) * x[k];
+    }
+    for (int i = 0; i < count; ++i) store(y + at + kWidth * i, sum[i]);
+  };
+  int at = 0;
+  for (; at + kWidth * kRows <= height; at += kWidth * kRows) rows.template operator()<kRows>(at);
+  for (; at < height; at += kWidth) rows.template operator()<1>(at);
+}
+
+double total(const Lanes& v) {
+  double sum = v[0];
+  for (int i = 1; i < kWidth; ++i) sum += v[i];
+  return sum;
+}
+
+template <int count>
+void dots(const double* A, int stride, int height, const double* y, double* x) {
+  Lanes sum[count] = {};
+  int at = 0;
+  for (; at + kWidth <= height; at += kWidth) {
+    const Lanes own = load(y + at);
+    for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * own;
+  }
+  for (int k = 0; k < count; ++k) {
+    double rest = 0.0;
+    for (int i = at; i < height; ++i) rest += A[static_cast<long>(k) * stride + i] * y[i];
+    x[k] -= total(sum[k]) + rest;
+  }
+}
+
+void multiply_transposed(const double* A, int stride, int height, int columns, const double* y, double* x) {
+  int k = 0;
+  for (; k + 4 <= columns; k += 4) dots<4>(A + static_cast<long>(k) * stride, stride, height, y, x + k);
+  for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, x + k);
+}
+
+// Blocks on the diagonal one by one; y and x have whole lanes.
+void solve(const double* panel, int stride, int columns, double* y) {
+  for (int first = 0; first < columns; first += kBlock) {
+    const int end = first + kBlock < columns ? first + kBlock : columns;
+    for (int j = first; j < end; ++j) {
+      const double* column = panel + static_cast<long>(j) * stride;
+      y[j] /= column[j];
+      for (int r = j + 1; r < end; ++r) y[r] -= column[r] * y[j];
+    }
+    if (end < columns)
+      multiply(panel + static_cast<long>(first) * stride + end, stride, columns - end, kBlock, y + first, y + end);
+  }
+}
+
+void solve_transposed(const double* panel, int stride, int columns, double* x) {
+  for (int first = (columns - 1) / kBlock * kBlock; first >= 0; first -= kBlock) {
+    const int end = first + kBlock < columns ? first + kBlock : columns;
+    multiply_transposed(panel + static_cast<long>(first) * stride + end, stride, columns - end, end - first, x + end,
+                        x + first);
+    for (int j = end - 1; j >= first; --j) {
+      const double* column = panel + static_cast<long>(j) * stride;
+      for (int r = j + 1; r < end; ++r) x[j] -= column[r] * x[r];
+      x[j] /= column[j];
+    }
+  }
+}
+
+}  // namespace
+
+const Kernels SINEW_KERNELS{SINEW_NAME, factor, update, solve, solve_transposed, multiply, multiply_transposed};
+
+}  // namespace sinew::linalg

@@ -1,0 +1,234 @@
+// Factorisation by fronts with every set of kernels, on bodies of three unknowns a node, beside dense matrices.
+#include "sinew/linalg/fronts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sinew/linalg/sparse_factor.hpp"
+
+namespace sinew::linalg {
+namespace {
+
+using Matrix = SparseFactor::Matrix;
+using Rows = SparseFactor::Rows;
+
+/// A bar of cells with random stiffness, some unknowns of its nodes held, and border rows in random cells.
+struct Bar {
+  Matrix A;
+  Rows H;
+};
+
+Bar random_bar(int length, int rows, double shift, unsigned seed) {
+  std::mt19937 draw(seed);
+  std::normal_distribution<double> number;
+  constexpr int width = 3;
+  const auto node = [](int i, int j, int k) { return (i * width + j) * width + k; };
+  const int nodes = length * width * width;
+  std::vector<int> unknown;
+  int unknowns = 0;
+  for (int i = 0; i < 3 * nodes; ++i) unknown.push_back(draw() % 7 == 0 ? -1 : unknowns++);
+  std::vector<std::vector<int>> cells;  // their unknowns
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i + 1 < length; ++i) {
+    for (int j = 0; j + 1 < width; ++j) {
+      for (int k = 0; k + 1 < width; ++k) {
+        std::vector<int>& own = cells.emplace_back();
+        for (int c = 0; c < 24; ++c) {
+          const int corner = c / 3;
+          const int u = unknown[3 * node(i + corner % 2, j + corner / 2 % 2, k + corner / 4) + c % 3];
+          if (u >= 0) own.push_back(u);
+        }
+        const auto n = static_cast<Eigen::Index>(own.size());
+        const Eigen::MatrixXd B = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return number(draw); });
+        const Eigen::MatrixXd K = B * B.transpose();
+        for (Eigen::Index a = 0; a < n; ++a) {
+          for (Eigen::Index b = 0; b < n; ++b) {
+            if (own[a] >= own[b]) entries.emplace_back(own[a], own[b], K(a, b));
+          }
+        }
+      }
+    }
+  }
+  for (int i = 0; i < unknowns; ++i) entries.emplace_back(i, i, 1.0 - shift);
+  Bar bar{Matrix(unknowns, unknowns), Rows(rows, unknowns)};
+  bar.A.setFromTriplets(entries.begin(), entries.end());
+  entries.clear();
+  for (int r = 0; r + 1 < rows; ++r) {  // the last one touches nothing
+    for (const int u : cells[draw() % cells.size()]) {
+      if (draw() % 2 == 0) entries.emplace_back(r, u, number(draw));
+    }
+  }
+  bar.H.setFromTriplets(entries.begin(), entries.end());
+  return bar;
+}
+
+Eigen::MatrixXd dense(const Matrix& A) { return Eigen::MatrixXd(A).selfadjointView<Eigen::Lower>(); }
+
+class EveryKernel : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!kernels(GetParam())) GTEST_SKIP() << "this processor has no " << GetParam();
+  }
+};
+
+TEST_P(EveryKernel, SolvesAndCondensesAsTheMatrixWrittenOut) {
+  for (const double shift : {0.0, 20.0}) {
+    for (const int length : {2, 3, 9, 25}) {
+      const Bar bar = random_bar(length, 3 * length, shift, static_cast<unsigned>(length));
+      const Eigen::MatrixXd A = dense(bar.A), H = bar.H;
+      const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A);
+      SparseFactor factor(SparseFactor::make_plan(bar.A, bar.H), *kernels(GetParam()));
+      for (int again = 0; again < 2; ++again) {  // nothing of the first is left in the second
+        SCOPED_TRACE("length " + std::to_string(length) + ", shift " + std::to_string(shift));
+        ASSERT_TRUE(factor.factor(bar.A, bar.H));
+        const Eigen::VectorXd b = Eigen::VectorXd::Random(A.rows());
+        const Eigen::VectorXd y = factor.half_solve(b), x = factor.back_solve(y);
+        EXPECT_LT((A * x - b).norm(), 1e-12 * (A.norm() * x.norm() + b.norm()));
+        EXPECT_EQ(factor.negative() > 0, shift > 0.0);
+        EXPECT_EQ(factor.negative(),
+                  (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues().array() < 0.0).count());
+        const Eigen::MatrixXd W = H * lu.solve(Eigen::MatrixXd(H.transpose()));
+        EXPECT_LT((factor.compliance() - W).norm(), 1e-10 * W.norm());
+        EXPECT_LT((factor.border_times(y) - H * x).norm(), 1e-10 * (H * x).norm());
+        const Eigen::VectorXd u = Eigen::VectorXd::Random(H.rows());
+        const Eigen::VectorXd back = factor.back_solve(factor.border_transposed_times(u));
+        EXPECT_LT((A * back - H.transpose() * u).norm(), 1e-11 * A.norm() * back.norm());
+      }
+    }
+  }
+}
+
+TEST(SparseFactor, GivesBackWhatWasPutTogether) {
+  const Bar bar = random_bar(9, 20, 0.0, 4);
+  const auto plan = SparseFactor::make_plan(bar.A, bar.H);
+  SparseFactor factor(plan);
+  for (Eigen::Index j = 0; j < bar.A.cols(); ++j) {
+    for (Matrix::InnerIterator at(bar.A, j); at; ++at)
+      factor.values()[plan->entry(static_cast<int>(j), static_cast<int>(at.row()))] += at.value();
+  }
+  EXPECT_EQ((dense(factor.assembled()) - dense(bar.A)).norm(), 0.0);
+  EXPECT_TRUE(factor.factor());
+  EXPECT_THROW(factor.factor(bar.A), std::invalid_argument);  // its border rows are missing
+}
+
+TEST_P(EveryKernel, GivesWhatTheOthersGive) {
+  const Bar bar = random_bar(12, 20, 0.0, 7);
+  const auto plan = SparseFactor::make_plan(bar.A, bar.H);
+  SparseFactor portable(plan, *kernels("portable")), own(plan, *kernels(GetParam()));
+  ASSERT_TRUE(portable.factor(bar.A, bar.H));
+  ASSERT_TRUE(own.factor(bar.A, bar.H));
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(bar.A.cols());
+  const Eigen::VectorXd x = portable.back_solve(portable.half_solve(b));
+  EXPECT_LT((own.back_solve(own.half_solve(b)) - x).norm(), 1e-12 * x.norm());
+  EXPECT_LT((own.compliance() - portable.compliance()).norm(), 1e-12 * portable.compliance().norm());
+}
+
+TEST_P(EveryKernel, RefusesWhatHasNoFactor) {
+  Bar bar = random_bar(4, 6, 0.0, 3);
+  SparseFactor factor(SparseFactor::make_plan(bar.A, bar.H), *kernels(GetParam()));
+  const Matrix sound = bar.A;
+  for (const double bad : {NAN, INFINITY}) {
+    bar.A = sound;
+    bar.A.valuePtr()[bar.A.nonZeros() / 2] = bad;
+    EXPECT_FALSE(factor.factor(bar.A, bar.H));
+  }
+  bar.A = sound;
+  for (int k = 0; k < bar.A.nonZeros(); ++k) bar.A.valuePtr()[k] = 0.0;
+  EXPECT_FALSE(factor.factor(bar.A, bar.H));
+  EXPECT_TRUE(factor.factor(sound, bar.H));
+}
+
+INSTANTIATE_TEST_SUITE_P(Fronts, EveryKernel, testing::Values("portable", "avx2", "avx512"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+Compressed columns(const Matrix& A) { return {static_cast<int>(A.cols()), A.outerIndexPtr(), A.innerIndexPtr()}; }
+
+Fronts plan_of(const Bar& bar) {
+  return plan_fronts(columns(bar.A), {static_cast<int>(bar.H.rows()), bar.H.outerIndexPtr(), bar.H.innerIndexPtr()});
+}
+
+TEST(Fronts, EachUnknownIsEliminatedOnceAndAllItMeetsAreInItsFront) {
+  const Bar bar = random_bar(20, 30, 0.0, 5);
+  const Fronts plan = plan_of(bar);
+  EXPECT_EQ(std::set<int>(plan.place.begin(), plan.place.end()).size(), plan.place.size());
+  EXPECT_EQ(*std::max_element(plan.place.begin(), plan.place.end()) + 1, static_cast<int>(plan.place.size()));
+  int next = 0;
+  for (const Front& front : plan.fronts) {
+    EXPECT_EQ(front.first, next);
+    next += front.columns;
+    EXPECT_EQ(front.parent < 0, front.below == 0);
+  }
+  EXPECT_EQ(next, bar.A.cols());
+  std::vector<std::set<int>> rows(plan.fronts.size());
+  for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
+    const Front& front = plan.fronts[s];
+    for (int i = 0; i < front.columns; ++i) rows[s].insert(front.first + i);
+    for (const int i : plan.rows_below(front)) rows[s].insert(i);
+  }
+  for (Eigen::Index j = 0; j < bar.A.cols(); ++j) {
+    for (Matrix::InnerIterator at(bar.A, j); at; ++at) {
+      const auto [first, later] = std::minmax({plan.place[at.row()], plan.place[j]});
+      const auto front = std::find_if(plan.fronts.begin(), plan.fronts.end(), [first = first](const Front& own) {
+        return own.first <= first && first < own.first + own.columns;
+      });
+      EXPECT_TRUE(rows[static_cast<std::size_t>(front - plan.fronts.begin())].contains(later));
+    }
+  }
+}
+
+TEST(Fronts, UpdatesThatLiveAtOneTimeDoNotOverlap) {
+  const Fronts plan = plan_of(random_bar(40, 30, 0.0, 6));
+  ASSERT_GT(plan.fronts.size(), 10u);
+  const auto end = [](const Front& front) {
+    return front.update + static_cast<std::size_t>(front.update_stride) * static_cast<std::size_t>(front.below);
+  };
+  std::size_t all = 0;
+  for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
+    const Front& own = plan.fronts[s];
+    all += end(own) - own.update;
+    EXPECT_LE(end(own), plan.updates);
+    for (std::size_t t = 0; t < s; ++t) {
+      const Front& earlier = plan.fronts[t];
+      if (earlier.parent < static_cast<int>(s) || earlier.below == 0 || own.below == 0) continue;
+      EXPECT_TRUE(end(earlier) <= own.update || end(own) <= earlier.update) << t << " and " << s;
+    }
+  }
+  EXPECT_LT(plan.updates, all / 2);
+}
+
+TEST(Fronts, UnknownsOfABorderRowMustMeet) {
+  Bar bar = random_bar(20, 2, 0.0, 8);
+  std::vector<Eigen::Triplet<double>> ends = {{0, 0, 1.0}, {0, static_cast<int>(bar.A.cols()) - 1, 1.0}};
+  bar.H.setFromTriplets(ends.begin(), ends.end());
+  EXPECT_THROW(plan_of(bar), std::invalid_argument);
+}
+
+TEST(Graph, UnknownsWithTheSameNeighboursAreOne) {
+  // A chain of three nodes of two unknowns each, and the last one of the chain held in one direction.
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [a, b] : std::vector<std::array<int, 2>>{
+           {0, 0}, {1, 0}, {2, 0}, {3, 0}, {1, 1}, {2, 1}, {3, 1}, {2, 2}, {3, 2}, {4, 2}, {3, 3}, {4, 3}, {4, 4}})
+    entries.emplace_back(a, b, 1.0);
+  Matrix A(5, 5);
+  A.setFromTriplets(entries.begin(), entries.end());
+  const Graph graph = graph_of(5, A.outerIndexPtr(), A.innerIndexPtr());
+  EXPECT_EQ(graph.weight, (std::vector<int>{2, 2, 1}));
+  EXPECT_EQ(graph.member, (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(graph.first, (std::vector<int>{0, 1, 3, 4}));
+  EXPECT_EQ(graph.neighbour, (std::vector<int>{1, 0, 2, 1}));
+  for (std::vector<int> order : {minimum_degree(graph), nested_dissection(graph)}) {
+    std::sort(order.begin(), order.end());
+    EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
+  }
+}
+
+}  // namespace
+}  // namespace sinew::linalg

@@ -1,0 +1,122 @@
+// Every kernel beside the same written with Eigen, over sizes around the width of registers and tiles.
+#include "sinew/linalg/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <string>
+
+namespace sinew::linalg {
+namespace {
+
+class Kernel : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    own = kernels(GetParam());
+    if (!own) GTEST_SKIP() << "this processor has no " << GetParam();
+  }
+  const Kernels* own = nullptr;
+};
+
+/// A matrix with room for whole registers behind its last row.
+Eigen::MatrixXd roomy(Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(whole_lanes(static_cast<int>(rows)) + kLanes, columns + 1);
+  A.topLeftCorner(rows, columns).setRandom();
+  return A;
+}
+
+Eigen::VectorXd random_signs(int n) {
+  return Eigen::VectorXd::Random(n).unaryExpr([](double x) { return x < 0.0 ? -1.0 : 1.0; });
+}
+
+int stride(const Eigen::MatrixXd& A) { return static_cast<int>(A.outerStride()); }
+
+TEST_P(Kernel, Updates) {
+  for (const int depth : {0, 1, 7, 20}) {
+    for (const int height : {0, 1, 2, 7, 8, 9, 17, 31, 50}) {
+      for (const int columns : {height, height / 2, height / 3}) {
+        for (const bool fresh : {false, true}) {
+          const Eigen::MatrixXd A = roomy(height, depth), before = roomy(height, columns);
+          const Eigen::VectorXd signs = depth % 2 ? Eigen::VectorXd::Ones(depth).eval() : random_signs(depth);
+          Eigen::MatrixXd C = before;
+          own->update(C.data(), stride(C), A.data(), stride(A), height, columns, depth, signs.data(), fresh);
+          const Eigen::MatrixXd rows = A.topLeftCorner(height, depth);
+          Eigen::MatrixXd expected = -rows * signs.asDiagonal() * rows.transpose();
+          if (!fresh) expected.leftCols(columns) += before.topLeftCorner(height, columns);
+          for (int j = 0; j < columns; ++j) {
+            EXPECT_LT((C.col(j).segment(j, height - j) - expected.col(j).tail(height - j)).norm(), 1e-13 * (depth + 1));
+            EXPECT_EQ(C.col(j).tail(kLanes).norm(), 0.0);  // behind whole lanes
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(Kernel, FactorsPanels) {
+  for (const int columns : {1, 2, 3, 7, 8, 9, 15, 16, 24, 41}) {
+    for (const int more : {0, 1, 5, 8, 30}) {
+      for (const bool definite : {true, false}) {
+        const int height = columns + more;
+        const Eigen::MatrixXd B = Eigen::MatrixXd::Random(height, height);
+        Eigen::MatrixXd A = B + B.transpose();
+        for (int i = 0; i < height; ++i) A(i, i) = (definite || i % 3 != 1 ? 1.0 : -1.0) * (2.0 * height + i);
+        Eigen::MatrixXd panel = Eigen::MatrixXd::Zero(whole_lanes(height), columns);
+        panel.topRows(height) = A.leftCols(columns);
+        Eigen::VectorXd pivots(columns), signs(columns);
+        ASSERT_TRUE(own->factor(panel.data(), stride(panel), columns, height, pivots.data(), signs.data()));
+        Eigen::MatrixXd P = panel.topRows(height);
+        P.topRows(columns).triangularView<Eigen::StrictlyUpper>().setZero();
+        const Eigen::MatrixXd product = P * signs.asDiagonal() * P.topRows(columns).transpose();
+        EXPECT_LT((product - A.leftCols(columns)).norm(), 1e-13 * A.norm()) << columns << " x " << height;
+        EXPECT_LT((P.diagonal().cwiseAbs2().cwiseProduct(signs) - pivots).norm(), 1e-13 * A.norm());
+        EXPECT_EQ((signs.array() < 0.0).any(), !definite && columns > 1);
+        EXPECT_EQ(panel.bottomRows(panel.rows() - height).norm(), 0.0);
+      }
+    }
+  }
+}
+
+TEST_P(Kernel, RefusesPivotsThatAreNone) {
+  for (const double bad : {0.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+    for (const int at : {0, 5, 12}) {
+      Eigen::MatrixXd panel = Eigen::MatrixXd::Identity(16, 13);
+      panel(at, at) = bad;
+      Eigen::VectorXd pivots(13), signs(13);
+      EXPECT_FALSE(own->factor(panel.data(), 16, 13, 13, pivots.data(), signs.data()));
+    }
+  }
+}
+
+TEST_P(Kernel, SolvesAndMultiplies) {
+  for (const int columns : {1, 3, 8, 9, 21}) {
+    for (const int height : {0, 1, 7, 8, 33, 70}) {
+      const Eigen::MatrixXd A = roomy(height, columns);
+      const Eigen::MatrixXd rows = A.topLeftCorner(height, columns);
+      const Eigen::VectorXd x = Eigen::VectorXd::Random(columns);
+      Eigen::VectorXd y = Eigen::VectorXd::Random(whole_lanes(height));
+      const Eigen::VectorXd before = y;
+      own->multiply(A.data(), stride(A), height, columns, x.data(), y.data());
+      EXPECT_LT((y.head(height) - (before.head(height) - rows * x)).norm(), 1e-13 * (1 + columns));
+      Eigen::VectorXd back = x;
+      own->multiply_transposed(A.data(), stride(A), height, columns, before.data(), back.data());
+      EXPECT_LT((back - (x - rows.transpose() * before.head(height))).norm(), 1e-13 * (1 + height));
+    }
+    Eigen::MatrixXd P = roomy(columns, columns);
+    for (int i = 0; i < columns; ++i) P(i, i) += 5.0;
+    const Eigen::MatrixXd L = P.topLeftCorner(columns, columns).triangularView<Eigen::Lower>();
+    Eigen::VectorXd y = Eigen::VectorXd::Random(whole_lanes(columns) + kLanes);
+    const Eigen::VectorXd right = y.head(columns);
+    own->solve(P.data(), stride(P), columns, y.data());
+    EXPECT_LT((L * y.head(columns) - right).norm(), 1e-12);
+    y.head(columns) = right;
+    own->solve_transposed(P.data(), stride(P), columns, y.data());
+    EXPECT_LT((L.transpose() * y.head(columns) - right).norm(), 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, Kernel, testing::Values("portable", "avx2", "avx512"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+}  // namespace
+}  // namespace sinew::linalg
