@@ -1,16 +1,13 @@
 #include "sinew/linalg/processor.hpp"
 
-#include <string_view>
-
 namespace sinew::linalg {
 
-bool runs_here(const char* name) {
-  const std::string_view asked = name;
+bool runs_here(std::string_view name) {
 #ifdef SINEW_X86_KERNELS
-  if (asked == "avx512") return __builtin_cpu_supports("avx512f");
-  if (asked == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (name == "avx512") return __builtin_cpu_supports("avx512f");
+  if (name == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #endif
-  return asked == "portable";
+  return name == "portable";
 }
 
 }  // namespace sinew::linalg

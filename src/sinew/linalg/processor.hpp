@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
+#include <string_view>
 
 namespace sinew::linalg {
 
@@ -9,15 +11,24 @@ namespace sinew::linalg {
 inline constexpr std::array<const char*, 3> kKernelNames = {"avx512", "avx2", "portable"};
 
 /// Whether a set is compiled in and the processor has its registers.
-bool runs_here(const char* name);
+bool runs_here(std::string_view name);
 
-/// The fastest set that runs here; `find` gives it by name, or null.
-template <class Find>
-const auto& fastest(const Find& find) {
-  for (const char* name : kKernelNames) {
-    if (const auto* found = find(name)) return *found;
+/// The set of a name among those compiled in; null where there is none, or it does not run here.
+template <class Kernels>
+const Kernels* by_name(std::string_view name, std::initializer_list<const Kernels*> sets) {
+  for (const Kernels* set : sets) {
+    if (set->name == name && runs_here(name)) return set;
   }
-  return *find("portable");  // not reached: it runs everywhere
+  return nullptr;
+}
+
+/// The fastest of a list that ends with the portable one.
+template <class Kernels>
+const Kernels& fastest(std::initializer_list<const Kernels*> sets) {
+  for (const char* name : kKernelNames) {
+    if (const Kernels* found = by_name(name, sets)) return *found;
+  }
+  return **(sets.end() - 1);
 }
 
 }  // namespace sinew::linalg

@@ -91,10 +91,19 @@ Matrix rotation(const Matrix& F, Truth& found) {
   return X;
 }
 
-unsigned missing(const Truth& found, int first) {
-  unsigned bits = 0;
-  for (int k = 0; k < kWidth; ++k) bits |= found[k] ? 0U : 1U << (first + k);
-  return bits;
+/// Visits a batch register by register with F and R; a bit for each element without one.
+template <class Visit>
+unsigned each_part(const TetBatch& batch, const double* x, const Visit& visit) {
+  unsigned missing = 0;
+  for (int first = 0; first < kBatch; first += kWidth) {
+    const Part part{batch, first};
+    const Matrix F = part.gradient_of(x);
+    Truth found;
+    const Matrix R = rotation(F, found);
+    for (int k = 0; k < kWidth; ++k) missing |= found[k] ? 0U : 1U << (first + k);
+    visit(part, F, R);
+  }
+  return missing;
 }
 
 /// Matrix times the gradients of the four nodes.
@@ -113,16 +122,10 @@ void put_forces(const Matrix& P, const Part& part, Eight (&force)[4][3]) {
 }
 
 unsigned forces(const TetBatch& batch, const double* x, const double* start, double rate, TetForces& forces) {
-  unsigned bad = 0;
-  for (int first = 0; first < kBatch; first += kWidth) {
-    const Part part{batch, first};
-    const Matrix F = part.gradient_of(x);
-    Truth found;
-    const Matrix R = rotation(F, found);
-    bad |= missing(found, first);
+  return each_part(batch, x, [&](const Part& part, const Matrix& F, const Matrix& R) {
     const Lanes pressure = part(batch.lambda) * (dot(R, F) - 3.0);
     put_forces((F - R) * (2.0 * part(batch.mu)) + R * pressure, part, forces.elastic);
-    if (rate == 0.0) continue;
+    if (rate == 0.0) return;
     // E - E_0 = sym((F_0 + dF / 2)^T dF)
     const Matrix dF = part.gradient_of_motion(x, start), middle = F - dF * (Lanes{} + 0.5);
     const Lanes xx = dot(middle.c0, dF.c0), yy = dot(middle.c1, dF.c1), zz = dot(middle.c2, dF.c2);
@@ -133,18 +136,11 @@ unsigned forces(const TetBatch& batch, const double* x, const double* start, dou
     const Matrix S = {
         {2.0 * mu * xx + trace, xy, zx}, {xy, 2.0 * mu * yy + trace, yz}, {zx, yz, 2.0 * mu * zz + trace}};
     put_forces({F * S.c0, F * S.c1, F * S.c2}, part, forces.viscous);
-  }
-  return bad;
+  });
 }
 
 unsigned stiffness(const TetBatch& batch, const double* x, double rate, TetStiffness& stiffness) {
-  unsigned bad = 0;
-  for (int first = 0; first < kBatch; first += kWidth) {
-    const Part part{batch, first};
-    const Matrix F = part.gradient_of(x);
-    Truth found;
-    const Matrix R = rotation(F, found);
-    bad |= missing(found, first);
+  return each_part(batch, x, [&](const Part& part, const Matrix& F, const Matrix& R) {
     const Lanes mu = part(batch.mu), lambda = part(batch.lambda);
     const Lanes viscous_mu = rate * part(batch.viscous_mu), viscous_lambda = rate * part(batch.viscous_lambda);
     // mu (g_a . g_b + R g_b (R g_a)^T) + lambda R g_a (R g_b)^T, and the same with F and F F^T in place of R and 1.
@@ -175,19 +171,18 @@ unsigned stiffness(const TetBatch& batch, const double* x, double rate, TetStiff
         c1 = c1 + Vector{xy * common, diagonal[1] * common, yz * common};
         c2 = c2 + Vector{zx * common, yz * common, diagonal[2] * common};
         Eight(&block)[9] = stiffness.block[a * (a + 1) / 2 + b];
-        store(block[0] + first, c0.x);
-        store(block[1] + first, c0.y);
-        store(block[2] + first, c0.z);
-        store(block[3] + first, c1.x);
-        store(block[4] + first, c1.y);
-        store(block[5] + first, c1.z);
-        store(block[6] + first, c2.x);
-        store(block[7] + first, c2.y);
-        store(block[8] + first, c2.z);
+        store(block[0] + part.first, c0.x);
+        store(block[1] + part.first, c0.y);
+        store(block[2] + part.first, c0.z);
+        store(block[3] + part.first, c1.x);
+        store(block[4] + part.first, c1.y);
+        store(block[5] + part.first, c1.z);
+        store(block[6] + part.first, c2.x);
+        store(block[7] + part.first, c2.y);
+        store(block[8] + part.first, c2.z);
       }
     }
-  }
-  return bad;
+  });
 }
 
 }  // namespace
