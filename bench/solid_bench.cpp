@@ -1,12 +1,10 @@
 // What the static bend of a block costs, size by size, against one sparse factorisation of the matrices it is made of.
 // README.md of this folder says how to run it and what was measured.
-#include <cholmod.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -16,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "cholmod.hpp"
 #include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/solid_matrix.hpp"
@@ -78,32 +77,6 @@ Scene bent_block() {
   scene.loads.emplace_back("tip", SolidLoad{"block", Plane{kSize, Vec3::UnitX()}, Vec3(0, 0, kForce)});
   return scene;
 }
-
-/// CHOLMOD's supernodal factorisation, with the ordering it chooses by itself.
-class Cholmod {
- public:
-  explicit Cholmod(const Matrix& A) : A_(Eigen::viewAsCholmod(A.selfadjointView<Eigen::Lower>())) {
-    cholmod_start(&common_);
-    common_.supernodal = CHOLMOD_SUPERNODAL;
-    factor_ = cholmod_analyze(&A_, &common_);
-  }
-  ~Cholmod() {
-    cholmod_free_factor(&factor_, &common_);
-    cholmod_finish(&common_);
-  }
-  Cholmod(const Cholmod&) = delete;
-  Cholmod& operator=(const Cholmod&) = delete;
-  bool factor() {
-    cholmod_factorize(&A_, factor_, &common_);
-    return common_.status == CHOLMOD_OK;
-  }
-  double entries() const { return common_.lnz; }
-
- private:
-  cholmod_common common_{};
-  cholmod_sparse A_;
-  cholmod_factor* factor_ = nullptr;
-};
 
 /// One numeric factorisation of A by the engine and by CHOLMOD, in turns.
 void factorise(const Matrix& A, Row& row) {

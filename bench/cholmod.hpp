@@ -1,0 +1,46 @@
+// CHOLMOD's supernodal factorisation: what the engine's own is compared with, in benchmarks only.
+#pragma once
+
+#include <cholmod.h>
+
+#include <Eigen/CholmodSupport>
+
+#include "sinew/linalg/sparse_factor.hpp"
+
+namespace sinew {
+
+class Cholmod {
+ public:
+  using Matrix = linalg::SparseFactor::Matrix;
+  enum class Ordering { own_choice, metis };
+
+  /// The lower triangle of a matrix, which must outlive this.
+  explicit Cholmod(const Matrix& A, Ordering ordering = Ordering::own_choice)
+      : A_(Eigen::viewAsCholmod(A.selfadjointView<Eigen::Lower>())) {
+    cholmod_start(&common_);
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    if (ordering == Ordering::metis) {
+      common_.nmethods = 1;
+      common_.method[0].ordering = CHOLMOD_METIS;
+    }
+    factor_ = cholmod_analyze(&A_, &common_);
+  }
+  ~Cholmod() {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+  Cholmod(const Cholmod&) = delete;
+  Cholmod& operator=(const Cholmod&) = delete;
+  bool factor() {
+    cholmod_factorize(&A_, factor_, &common_);
+    return common_.status == CHOLMOD_OK;
+  }
+  double entries() const { return common_.lnz; }
+
+ private:
+  cholmod_common common_{};
+  cholmod_sparse A_;
+  cholmod_factor* factor_ = nullptr;
+};
+
+}  // namespace sinew

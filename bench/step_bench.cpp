@@ -1,0 +1,229 @@
+// What a whole time step costs, beside one numeric factorisation of its matrix by CHOLMOD in the same process.
+// README.md of this folder says how to run it and what was measured.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cholmod.hpp"
+#include "sinew/io/mesh_file.hpp"
+#include "sinew/linalg/kernels.hpp"
+#include "sinew/sim/free_motion.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/solid_matrix.hpp"
+#include "support/meshes.hpp"
+
+namespace sinew {
+namespace {
+
+constexpr double mm = 1e-3;
+
+double now() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A cable of three strains along a straight line, tied at abscissae, the last one its tip.
+void add_cable(Scene& scene, const std::string& name, const std::vector<Vec3>& path, int sections,
+               std::vector<double> points, double radius, double pull) {
+  Rod rod;
+  rod.path = path;
+  rod.sections = sections;
+  rod.section = Circle{radius};
+  rod.material = {5e9, 0.4, 1100.0};
+  scene.rods.emplace_back(name, rod);
+  Slide slide;
+  slide.rod = name;
+  slide.solid = "body";
+  slide.points = std::move(points);
+  scene.couplings.emplace_back(slide);
+  Actuator actuator;
+  actuator.rod = name;
+  actuator.drive = Table{{0.0, 2.0}, {0.0, pull}};
+  scene.actuators.emplace_back(name, actuator);
+}
+
+std::vector<double> evenly(double length, int count) {
+  std::vector<double> at;
+  for (int i = 1; i <= count; ++i) at.push_back(length * i / count);
+  return at;
+}
+
+Scene linearised() {
+  Scene scene;
+  scene.time = {0.01, 1000.0};
+  scene.newton.iterations = 1;
+  scene.gravity = Vec3::Zero();
+  return scene;
+}
+
+/// The public finger (158 nodes) with a straight cable in `sections`, tied at `points`.
+Scene finger(const std::filesystem::path& meshes, int sections, int points, Cable kind) {
+  Scene scene = linearised();
+  Solid body;
+  body.mesh = meshes / "finger.vtk";
+  body.scale = mm;
+  body.pose = {{0.0, std::numbers::pi, 0.0}, {-17.5 * mm, -12.5 * mm, 7.5 * mm}};
+  body.material.law = solid::corotational(500e3, 0.45);
+  body.mass = 0.075;
+  body.rayleigh = {0.1, 0.1};
+  body.fixed.push_back({Box{Vec3(-19.5 * mm, -2.5 * mm, -0.5 * mm), Vec3(0.5 * mm, 9.5 * mm, 15.5 * mm)}});
+  scene.solids.emplace_back("body", body);
+  add_cable(scene, "cable", {Vec3::Zero(), Vec3(81 * mm, 0, 0)}, sections, evenly(81 * mm, points), 0.5 * mm, 5 * mm);
+  scene.rods[0].second.cable = kind;
+  return scene;
+}
+
+/// The public trunk (709 nodes) with its four cables, tied where the paper's are (10 points a cable) or evenly.
+Scene trunk(const std::filesystem::path& meshes, int points) {
+  Scene scene = linearised();
+  Solid body;
+  body.mesh = meshes / "trunk.vtk";
+  body.scale = mm;
+  body.material.law = solid::corotational(450e3, 0.45);
+  body.mass = 0.042;
+  body.rayleigh = {0.1, 0.1};
+  body.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitZ(), 1 * mm}});
+  scene.solids.emplace_back("body", body);
+  constexpr double length = 185.368 * mm;
+  const Vec3 way = Vec3(0, -8, 195).normalized();
+  std::vector<double> at = evenly(length, points);
+  if (points == 10) {
+    at.clear();
+    for (int j = 0; j < 9; ++j) at.push_back((32.743 + 17.485 * j) * mm);
+    at.push_back(length);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::AngleAxisd turn(i * std::numbers::pi / 2, Vec3::UnitZ());
+    const Vec3 from = turn * Vec3(0, 10 * mm, 0), to = from + length * (turn * way);
+    add_cable(scene, "cable" + std::to_string(i), {from, to}, 20, at, 0.2 * mm, i == 0 ? 2 * mm : 0.0);
+  }
+  return scene;
+}
+
+/// A block of about so many tetrahedra with one cable off its middle, tied at 15 points.
+Scene block() {
+  Scene scene = linearised();
+  Solid body;
+  body.mesh = "block";
+  body.material.law = solid::corotational(600e3, 0.45);
+  body.density = 1000.0;
+  body.rayleigh = {0.1, 0.02};
+  body.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitX()}});
+  scene.solids.emplace_back("body", body);
+  add_cable(scene, "cable", {Vec3(0, 7 * mm, 5 * mm), Vec3(50 * mm, 7 * mm, 5 * mm)}, 15, evenly(50 * mm, 15), 0.5 * mm,
+            2 * mm);
+  return scene;
+}
+
+MeshReader block_of(int cells) {
+  return [cells](const auto&) {
+    const auto n = static_cast<int>(std::lround(std::cbrt(cells / 30.0)));
+    return test::block_mesh(static_cast<int>(std::lround(cells / (6.0 * n * n))), n, n, Vec3(0.05, 0.01, 0.01),
+                            solid::Kind::tet4);
+  };
+}
+
+struct Measured {
+  int cells = 0, unknowns = 0, rows = 0;
+  double step = std::numeric_limits<double>::infinity(), reference = step;  ///< [ms], smallest
+  StageTimes stages;                                                        ///< [s] of the fastest step
+};
+
+/// Whole steps from the same few states and factorisations of their matrix, in turns.
+Measured measure(const Model& model, int turns) {
+  Measured result;
+  Workspace workspace = make_workspace(model);
+  State state = initial_state(model);
+  for (int i = 0; i < 10; ++i) {  // away from rest
+    StepResult next = advance(model, workspace, state);
+    if (!accepted(next.report.status)) throw std::runtime_error("the run stopped");
+    state = std::move(next.next);
+  }
+  const StepContext context = make_context(model, state, command_at(model, state.time), model.scene.time.step);
+  linalg::SparseFactor factor(model.solids[0].fronts);
+  assemble(model.solids[0], context.solids[0], state.solids[0].x, solid::Tangent::definite, factor.values());
+  const linalg::SparseFactor::Matrix A = factor.assembled();
+  Cholmod reference(A, Cholmod::Ordering::metis);
+  result.cells = model.solids[0].body.elements();
+  result.unknowns = model.solids[0].body.unknowns;
+  result.rows = model.rows;
+  for (int i = 0; i < turns; ++i) {
+    const double start = now();
+    const StepResult next = advance(model, workspace, state);
+    const double middle = now();
+    if (!accepted(next.report.status)) throw std::runtime_error("the run stopped");
+    if (!reference.factor()) throw std::runtime_error("not positive definite");
+    const double end = now();
+    if (middle - start < result.step) result.stages = next.report.times;
+    result.step = std::min(result.step, middle - start);
+    result.reference = std::min(result.reference, end - middle);
+  }
+  return result;
+}
+
+void print(const std::string& name, const Measured& own) {
+  const StageTimes& t = own.stages;
+  fmt::print("| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n",
+             name, own.cells, own.unknowns, own.rows, own.step, own.reference, own.step / own.reference, 1e3 * t.forces,
+             1e3 * t.assembly, 1e3 * t.factor, 1e3 * t.compliance, 1e3 * t.rods, 1e3 * t.solve);
+  std::fflush(stdout);
+}
+
+int run_all(const std::filesystem::path& meshes, const std::string& wanted, int turns) {
+  fmt::print("Registers: {}. Smallest of {} turns, ms.\n\n", linalg::kernels().name, turns);
+  fmt::print(
+      "| scene | cells | unknowns | rows | step | R | step / R | forces | assembly | factor | W | rods | border |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const auto go = [&](const std::string& name, const auto& model, int count) {
+    if (name.find(wanted) == std::string::npos) return;
+    print(name, measure(model(), count));
+  };
+  if (std::filesystem::exists(meshes / "trunk.vtk")) {
+    go(
+        "finger, 7 points", [&] { return build(finger(meshes, 6, 7, Cable::cosserat), io::read_mesh); }, turns);
+    go(
+        "finger, 15 points", [&] { return build(finger(meshes, 15, 15, Cable::cosserat), io::read_mesh); }, turns);
+    go(
+        "finger, geometric", [&] { return build(finger(meshes, 1, 15, Cable::geometric), io::read_mesh); }, turns);
+    go(
+        "trunk, 10 points", [&] { return build(trunk(meshes, 10), io::read_mesh); }, turns);
+    go(
+        "trunk, 21 points", [&] { return build(trunk(meshes, 21), io::read_mesh); }, turns);
+  } else {
+    fmt::print(stderr, "No finger.vtk and trunk.vtk in {}: give their folder\n", meshes.string());
+  }
+  for (const int thousands : {8, 32, 128})
+    go(
+        fmt::format("block, {} k", thousands), [&] { return build(block(), block_of(1000 * thousands)); },
+        std::max(5, turns * 4 / thousands));
+  return 0;
+}
+
+}  // namespace
+}  // namespace sinew
+
+int main(int argc, char** argv) {
+  // One thread: the BLAS reads this when it is loaded.
+  if (!std::getenv("OPENBLAS_NUM_THREADS") || !std::getenv("OMP_NUM_THREADS")) {
+    setenv("OPENBLAS_NUM_THREADS", "1", 1);
+    setenv("OMP_NUM_THREADS", "1", 1);
+    execv("/proc/self/exe", argv);
+  }
+  const std::string meshes = argc > 1 ? argv[1] : SINEW_SHARED_MESHES, wanted = argc > 2 ? argv[2] : "";
+  try {
+    return sinew::run_all(meshes, wanted, argc > 3 ? std::atoi(argv[3]) : 200);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "step_bench: {}\n", error.what());
+    return 1;
+  }
+}
