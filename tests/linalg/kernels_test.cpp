@@ -32,12 +32,14 @@ Eigen::VectorXd random_signs(int n) {
 int stride(const Eigen::MatrixXd& A) { return static_cast<int>(A.outerStride()); }
 
 TEST_P(Kernel, Updates) {
-  for (const int depth : {0, 1, 7, 20}) {
+  for (const int depth : {0, 1, 7, 16, 20}) {
     for (const int height : {0, 1, 2, 7, 8, 9, 17, 31, 50}) {
       for (const int columns : {height, height / 2, height / 3}) {
         for (const bool fresh : {false, true}) {
           const Eigen::MatrixXd A = roomy(height, depth), before = roomy(height, columns);
-          const Eigen::VectorXd signs = depth % 2 ? Eigen::VectorXd::Ones(depth).eval() : random_signs(depth);
+          Eigen::VectorXd signs = random_signs(depth);
+          if (depth % 2 == 1) signs.setOnes();
+          if (depth == 16) signs.setConstant(-1.0);
           Eigen::MatrixXd C = before;
           own->update(C.data(), stride(C), A.data(), stride(A), height, columns, depth, signs.data(), fresh);
           const Eigen::MatrixXd rows = A.topLeftCorner(height, depth);

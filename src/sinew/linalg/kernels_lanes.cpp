@@ -21,7 +21,8 @@ constexpr int kAcross = kWidth == 8 ? 8 : kWidth == 4 ? 4 : 2;
 struct Product {
   const double *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
   int stride, depth;
-  const double* signs;  ///< null: all positive
+  const double* signs;
+  double sign = 1.0;  ///< of all, where they are alike
 };
 
 /// C <- C - A S B^T or -A S B^T, for one tile.
@@ -49,7 +50,10 @@ void tile(double* C, int stride, const Product& product, bool fresh) {
   for (int j = 0; j < across; ++j) {
     double* c = C + static_cast<long>(j) * stride;
 #pragma GCC unroll 8
-    for (int i = 0; i < down; ++i) store(c + kWidth * i, fresh ? sum[j][i] : load(c + kWidth * i) + sum[j][i]);
+    for (int i = 0; i < down; ++i) {
+      const Lanes own = turned ? sum[j][i] : sum[j][i] * product.sign;
+      store(c + kWidth * i, fresh ? own : load(c + kWidth * i) + own);
+    }
   }
 }
 
@@ -59,7 +63,8 @@ void strip(double* C, int stride, const Product& product, int rows, bool fresh) 
   int row = 0;
   const auto tiles = [&]<int down>() {
     for (; row + kWidth * down <= rows; row += kWidth * down) {
-      const Product own{product.A + row, product.B, product.stride, product.depth, product.signs};
+      Product own = product;
+      own.A += row;
       tile<down, across, turned>(C + row, stride, own, fresh);
     }
   };
@@ -89,13 +94,13 @@ void rank_update(double* C, int C_stride, Product product, int height, int colum
 
 void update(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
             const double* signs, bool fresh) {
-  bool positive = true;
-  for (int k = 0; k < depth; ++k) positive &= signs[k] > 0.0;
-  const Product product{A, A, A_stride, depth, signs};
-  if (positive) {
-    rank_update<false>(C, C_stride, product, height, columns, fresh);
-  } else {
+  bool mixed = false;  // rarely: where an indefinite matrix changes its sign
+  for (int k = 1; k < depth; ++k) mixed |= signs[k] != signs[0];
+  const Product product{A, A, A_stride, depth, signs, depth > 0 ? signs[0] : 1.0};
+  if (mixed) {
     rank_update<true>(C, C_stride, product, height, columns, fresh);
+  } else {
+    rank_update<false>(C, C_stride, product, height, columns, fresh);
   }
 }
 
