@@ -15,7 +15,7 @@ namespace {
 /// Eleven tetrahedra apart from each other, so that a batch is full and another is not.
 constexpr int kCells = 11;
 
-Body sample_body(double stiff = 1.0) {
+Body sample_body() {
   std::srand(1);
   Eigen::Matrix3Xd rest(3, 4 * kCells);
   std::vector<Cell> cells;
@@ -30,8 +30,7 @@ Body sample_body(double stiff = 1.0) {
       Eigen::Array<bool, 3, Eigen::Dynamic>::Constant(3, rest.cols(), false);
   std::vector<int> material(kCells, 0);
   material[4] = 1;
-  return make_body(rest, cells,
-                   {{corotational(stiff * 6e5, 0.45), 1000.0, {30.0, 50.0}}, {corotational(1e5, 0.2), 1000.0, {}}},
+  return make_body(rest, cells, {{corotational(6e5, 0.45), 1000.0, {30.0, 50.0}}, {corotational(1e5, 0.2), 1000.0, {}}},
                    material, held);
 }
 

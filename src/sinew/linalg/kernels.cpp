@@ -4,21 +4,13 @@
 
 namespace sinew::linalg {
 
-extern const Kernels kPortable;
-#ifdef SINEW_X86_KERNELS
-extern const Kernels kAvx2, kAvx512;
-#define SINEW_SETS \
-  { &kAvx512, &kAvx2, &kPortable }
-#else
-#define SINEW_SETS \
-  { &kPortable }
-#endif
+extern const Kernels kAvx512, kAvx2, kPortable;
 
 const Kernels& kernels() {
-  static const Kernels& found = linalg::fastest<Kernels>(SINEW_SETS);
+  static const Kernels& found = linalg::fastest<Kernels>(SINEW_KERNEL_SETS);
   return found;
 }
 
-const Kernels* kernels(const char* name) { return linalg::by_name<Kernels>(name, SINEW_SETS); }
+const Kernels* kernels(const char* name) { return linalg::by_name<Kernels>(name, SINEW_KERNEL_SETS); }
 
 }  // namespace sinew::linalg

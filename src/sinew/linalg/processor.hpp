@@ -1,34 +1,35 @@
 // Which of the kernels that are compiled for several widths of registers this processor runs.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <initializer_list>
 #include <string_view>
 
+/// The sets compiled in of a layer that declares its `kAvx512`, `kAvx2` and `kPortable`, the fastest first.
+#ifdef SINEW_X86_KERNELS
+#define SINEW_KERNEL_SETS \
+  { &kAvx512, &kAvx2, &kPortable }
+#else
+#define SINEW_KERNEL_SETS \
+  { &kPortable }
+#endif
+
 namespace sinew::linalg {
 
-/// The sets of kernels there are, the fastest first.
-inline constexpr std::array<const char*, 3> kKernelNames = {"avx512", "avx2", "portable"};
-
-/// Whether a set is compiled in and the processor has its registers.
+/// Whether a set is compiled in and the processor has its registers: "avx512", "avx2", "portable".
 bool runs_here(std::string_view name);
 
-/// The set of a name among those compiled in; null where there is none, or it does not run here.
+/// The set of a name; null where there is none, or it does not run here.
 template <class Kernels>
 const Kernels* by_name(std::string_view name, std::initializer_list<const Kernels*> sets) {
-  for (const Kernels* set : sets) {
-    if (set->name == name && runs_here(name)) return set;
-  }
-  return nullptr;
+  const auto found = std::find_if(sets.begin(), sets.end(), [name](const Kernels* set) { return set->name == name; });
+  return found != sets.end() && runs_here(name) ? *found : nullptr;
 }
 
-/// The fastest of a list that ends with the portable one.
+/// The first that runs here.
 template <class Kernels>
 const Kernels& fastest(std::initializer_list<const Kernels*> sets) {
-  for (const char* name : kKernelNames) {
-    if (const Kernels* found = by_name(name, sets)) return *found;
-  }
-  return **(sets.end() - 1);
+  return **std::find_if(sets.begin(), sets.end(), [](const Kernels* set) { return runs_here(set->name); });
 }
 
 }  // namespace sinew::linalg
