@@ -2,12 +2,23 @@
 #pragma once
 
 #include <cholmod.h>
+#include <unistd.h>
 
 #include <Eigen/CholmodSupport>
+#include <cstdlib>
 
 #include "sinew/linalg/sparse_factor.hpp"
 
 namespace sinew {
+
+/// Starts the program again with one thread everywhere: libraries read these when they are loaded. CHOLMOD asks OpenMP
+/// for four threads whatever OMP_NUM_THREADS says, and on fewer processors they wait for each other; only the limit
+/// binds it.
+inline void one_thread(char** argv) {
+  if (std::getenv("OMP_THREAD_LIMIT")) return;
+  for (const char* name : {"OMP_THREAD_LIMIT", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"}) setenv(name, "1", 1);
+  execv("/proc/self/exe", argv);
+}
 
 class Cholmod {
  public:

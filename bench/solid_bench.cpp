@@ -216,6 +216,7 @@ bool report(Kind kind, const std::vector<int>& sizes, int most) {
 
 /// solid_bench [N]: blocks of at most N cells.
 int main(int argc, char** argv) {
+  sinew::one_thread(argv);
   const int most = argc > 1 ? std::atoi(argv[1]) : 60000;
   const bool tet4 = sinew::report(sinew::Kind::tet4, {2000, 5000, 10000, 20000, 40000, 60000}, most);
   const bool tet10 = sinew::report(sinew::Kind::tet10, {2000, 10000}, most);

@@ -2,7 +2,6 @@
 // README.md of this folder says how to run it and what was measured.
 #include <fmt/format.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -214,12 +213,7 @@ int run_all(const std::filesystem::path& meshes, const std::string& wanted, int 
 }  // namespace sinew
 
 int main(int argc, char** argv) {
-  // One thread: the BLAS reads this when it is loaded.
-  if (!std::getenv("OPENBLAS_NUM_THREADS") || !std::getenv("OMP_NUM_THREADS")) {
-    setenv("OPENBLAS_NUM_THREADS", "1", 1);
-    setenv("OMP_NUM_THREADS", "1", 1);
-    execv("/proc/self/exe", argv);
-  }
+  sinew::one_thread(argv);
   // Memory that is given back stays in the process: neither side pays for fresh pages in every turn.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
