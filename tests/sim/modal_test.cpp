@@ -110,9 +110,10 @@ TEST(Modal, MasslessRodsAreRefusedWithAReason) {
   scene.rods[0].second.material.density = 0.0;
   const Model model = build(scene, test::read_block);
   Workspace workspace = make_workspace(model);
-  const StepResult result = advance(model, workspace, initial_state(model));
-  EXPECT_EQ(result.report.status, Status::singular);
-  EXPECT_NE(result.report.detail.find("density"), std::string::npos);
+  State state = initial_state(model);
+  const StepReport report = advance(model, workspace, state);
+  EXPECT_EQ(report.status, Status::singular);
+  EXPECT_NE(report.detail.find("density"), std::string::npos);
 }
 
 TEST(Modal, BlockAndRodOfTheSameShapeHaveTheSameFrequencies) {

@@ -13,6 +13,14 @@
 namespace sinew::solid {
 namespace {
 
+Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
+                          double* scale = nullptr) {
+  Residual own;
+  solid::residual(body, start, x, gravity, own);
+  if (scale) *scale = own.scale;
+  return own.sum;
+}
+
 struct Named {
   std::string name;
   Law law;

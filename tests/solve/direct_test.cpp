@@ -14,12 +14,27 @@ Eigen::MatrixXd waves(int rows, int columns, double phase) {
   });
 }
 
+void put(Entries& entries, const Eigen::MatrixXd& M) {
+  entries.clear();
+  entries.add(0, 0, M);
+}
+
+Eigen::MatrixXd dense(const Entries& entries, const Eigen::VectorXd& rows, const Eigen::VectorXd& columns) {
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(rows.size(), columns.size());
+  for (const auto& [row, column, value] : entries) M(row, column) += value;
+  return M;
+}
+Eigen::MatrixXd B_of(const CoupledProblem& p) { return dense(p.B, p.r, p.r); }
+Eigen::MatrixXd G_of(const CoupledProblem& p) { return dense(p.G, p.c, p.r); }
+
 CoupledProblem problem(int nz, int rows) {
   const Eigen::MatrixXd b = waves(nz, nz, 0.1), w = waves(rows, rows, 0.7);
   CoupledProblem p;
-  p.B = 1e-4 * (b * b.transpose() + Eigen::MatrixXd::Identity(nz, nz));  // as a thin rod: small
-  p.W = 1e-3 * (w * w.transpose() + 0.1 * Eigen::MatrixXd::Identity(rows, rows));
-  p.G = waves(rows, nz, 0.3);
+  put(p.B, 1e-4 * (b * b.transpose() + Eigen::MatrixXd::Identity(nz, nz)));  // as a thin rod: small
+  VolumePart& volume = p.volumes.emplace_back();
+  volume.W = 1e-3 * (w * w.transpose() + 0.1 * Eigen::MatrixXd::Identity(rows, rows));
+  for (int i = 0; i < rows; ++i) volume.at.push_back(i);
+  put(p.G, waves(rows, nz, 0.3));
   p.r = waves(nz, 1, 0.5);
   p.c = 1e-2 * waves(rows, 1, 0.9);
   return p;
@@ -30,46 +45,53 @@ TEST(Direct, agrees_with_eliminating_the_rods_first_as_the_paper_does) {
   const CoupledSolution solution = solve_direct(p);
   ASSERT_TRUE(solution.ok);
   EXPECT_FALSE(solution.redundant);
-  const Eigen::MatrixXd Binv = p.B.inverse();
-  const Eigen::MatrixXd W = p.W + p.G * Binv * p.G.transpose();              // (11)
-  const Eigen::VectorXd lambda = -W.ldlt().solve(p.c + p.G * (Binv * p.r));  // (12)
+  const Eigen::MatrixXd Binv = B_of(p).inverse(), G = G_of(p);
+  const Eigen::MatrixXd W = p.volumes[0].W + G * Binv * G.transpose();     // (11)
+  const Eigen::VectorXd lambda = -W.ldlt().solve(p.c + G * (Binv * p.r));  // (12)
   EXPECT_LT((solution.dlambda - lambda).norm(), 1e-10 * lambda.norm());
-  EXPECT_LT((solution.dz + Binv * (p.r + p.G.transpose() * lambda)).norm(), 1e-9 * solution.dz.norm());
+  EXPECT_LT((solution.dz + Binv * (p.r + G.transpose() * lambda)).norm(), 1e-9 * solution.dz.norm());
 }
 
 TEST(Direct, needs_no_inverse_of_the_rods_matrix) {
   CoupledProblem p = problem(4, 6);
-  p.B.row(2).setZero();
-  p.B.col(2).setZero();  // the abscissa of a point on a straight cable
+  Eigen::MatrixXd B = B_of(p);
+  const Eigen::MatrixXd G = G_of(p);
+  B.row(2).setZero();
+  B.col(2).setZero();  // the abscissa of a point on a straight cable
+  put(p.B, B);
   const CoupledSolution solution = solve_direct(p);
   ASSERT_TRUE(solution.ok);
-  EXPECT_LT((p.B * solution.dz + p.G.transpose() * solution.dlambda + p.r).norm(), 1e-11);
-  EXPECT_LT((p.G * solution.dz - p.W * solution.dlambda - p.c).norm(), 1e-11);
+  EXPECT_LT((B * solution.dz + G.transpose() * solution.dlambda + p.r).norm(), 1e-11);
+  EXPECT_LT((G * solution.dz - p.volumes[0].W * solution.dlambda - p.c).norm(), 1e-11);
 }
 
 TEST(Direct, repeated_rows_that_agree_are_survived) {
   CoupledProblem p = problem(7, 3);
-  p.W.setZero();
-  p.G.row(2) = p.G.row(1);
+  p.volumes.clear();
+  Eigen::MatrixXd G = G_of(p);
+  G.row(2) = G.row(1);
+  put(p.G, G);
   p.c[2] = p.c[1];
   const CoupledSolution solution = solve_direct(p);
   ASSERT_TRUE(solution.ok);
   EXPECT_TRUE(solution.redundant);
-  EXPECT_LT((p.G * solution.dz - p.c).norm(), 1e-9);
+  EXPECT_LT((G * solution.dz - p.c).norm(), 1e-9);
   EXPECT_NEAR(solution.dlambda[1], solution.dlambda[2], 1e-7 * solution.dlambda.norm());  // the load is shared
 }
 
 TEST(Direct, contradicting_rows_are_refused) {
   CoupledProblem p = problem(7, 3);
-  p.W.setZero();
-  p.G.row(2) = p.G.row(1);
+  p.volumes.clear();
+  Eigen::MatrixXd G = G_of(p);
+  G.row(2) = G.row(1);
+  put(p.G, G);
   p.c[2] = p.c[1] + 1.0;
   EXPECT_FALSE(solve_direct(p).ok);
 }
 
 TEST(Direct, numbers_that_are_not_finite_are_refused) {
   CoupledProblem p = problem(3, 2);
-  p.B(1, 1) = std::nan("");
+  p.B.add(1, 1, std::nan(""));
   EXPECT_FALSE(solve_direct(p).ok);
 }
 
@@ -105,6 +127,35 @@ CoupledProblem chained(bool symmetric) {
 
 class Chains : public testing::TestWithParam<bool> {};
 
+/// A point that nothing gives way to along the rod that slides through it: its row has no compliance there, and the
+/// abscissa nothing but this row.
+TEST(Direct, a_row_that_nothing_gives_way_to_holds_its_unknown) {
+  for (const double w : {0.0, 1e-19, 1e-12}) {
+    CoupledProblem p = problem(5, 6);
+    Eigen::MatrixXd B = B_of(p), G = G_of(p);
+    B.row(4).setZero();
+    B.col(4).setZero();
+    G.col(4).setZero();
+    G(2, 4) = 1.0;
+    put(p.B, B);
+    put(p.G, G);
+    Eigen::MatrixXd& W = p.volumes[0].W;
+    W.row(2).setZero();
+    W.col(2).setZero();
+    W(2, 2) = w;
+    const CoupledSolution solution = solve_direct(p);
+    ASSERT_TRUE(solution.ok);
+    EXPECT_FALSE(solution.redundant);
+    EXPECT_LT(solution.residual, 1e-12);
+    EXPECT_LT((B * solution.dz + G.transpose() * solution.dlambda + p.r).norm(), 1e-11);
+    EXPECT_LT((G * solution.dz - W * solution.dlambda - p.c).norm(), 1e-11);
+    CoupledFactor factor;
+    factor.factor(p);
+    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(written_out(p)).eigenvalues();
+    EXPECT_EQ(factor.negative(), (values.array() < 0.0).count());
+  }
+}
+
 TEST_P(Chains, eliminated_or_written_out_give_the_same) {
   const CoupledProblem p = chained(GetParam());
   const CoupledSolution solution = solve_direct(p);
@@ -135,7 +186,8 @@ TEST(Chains, negative_eigenvalues_are_counted_through_the_elimination) {
   for (const double shift : {0.0, 6.0, 12.0}) {
     CoupledProblem shifted = p;
     for (int k = 0; k < 4; ++k) shifted.chains[0].chain.block(k).diagonal().array() -= shift;
-    const CoupledFactor factor(shifted);
+    CoupledFactor factor;
+    factor.factor(shifted);
     const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(written_out(shifted)).eigenvalues();
     EXPECT_EQ(factor.negative(), (values.array() < 0.0).count()) << shift;
   }

@@ -149,19 +149,21 @@ TEST_P(Locking, newton_converges_quadratically_for_every_law) {
     Command command = command_at(bent.model, 1.0);
     command.loads[0] *= 1.05;
     const StepContext context = make_context(bent.model, bent.end(), command, 1.0);
-    Workspace workspace = make_workspace(bent.model);
+    Linearization here;
+    Increment increment;
     State iterate = bent.end();
     StageTimes times;
     std::vector<double> residuals;
     std::vector<Eigen::Matrix3Xd> positions;
     for (int i = 0; i < 7; ++i) {
-      Linearization here(context, workspace, iterate, times);
+      here.evaluate(context, iterate, times);
       residuals.push_back(here.largest() / here.scale());
       positions.push_back(iterate.solids[0].x);
       std::string failed;
       ASSERT_TRUE(here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed));
       EXPECT_FALSE(here.rotated());
-      advance_by(context, here.solve(), 1.0, iterate);
+      here.solve(increment);
+      advance_by(context, increment, 1.0, iterate);
     }
     std::cout << name << ":";
     for (const double r : residuals) std::cout << " " << r;

@@ -31,6 +31,7 @@ std::array<double, 8> stumpff(double z);
 /// A map M(f) of the family above: coefficients a, b and their first two derivatives with respect to z.
 class RotationMap {
  public:
+  RotationMap() = default;  ///< nothing yet
   /// exp(f), the rotation by |f| about f.
   static RotationMap exponential(const Vec3& f);
   /// V(f) = int_0^1 exp(t f) dt; d exp(f) exp(f)^-1 = [V(f) df]x.

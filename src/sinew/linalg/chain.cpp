@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "sinew/linalg/sized.hpp"
-
 namespace sinew::linalg {
 
 Chain make_chain(const std::vector<int>& sizes, bool symmetric) {
@@ -37,21 +35,22 @@ Eigen::MatrixXd dense(const Chain& chain) {
   return A;
 }
 
-Eigen::VectorXd multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau) {
-  Eigen::VectorXd y(chain.coordinates());
+void multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y) {
+  y.resize(chain.coordinates());
   Vec6 twist = tau;
   for (int k = 0; k < chain.links(); ++k) {
     const int at = chain.first[k], m = chain.size(k);
-    y.segment(at, m) = chain.left_wrenches(k).transpose() * twist + chain.block(k) * x.segment(at, m);
-    twist += chain.twists(k) * x.segment(at, m);
+    auto own = y.segment(at, m);
+    own.noalias() = chain.left_wrenches(k).transpose().lazyProduct(twist);
+    own.noalias() += chain.block(k).lazyProduct(x.segment(at, m));
+    twist.noalias() += chain.twists(k).lazyProduct(x.segment(at, m));
   }
   Vec6 wrench = Vec6::Zero();
   for (int k = chain.links() - 1; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
-    y.segment(at, m) += chain.twists(k).transpose() * wrench;
-    wrench += chain.wrenches(k) * x.segment(at, m);
+    y.segment(at, m).noalias() += chain.twists(k).transpose().lazyProduct(wrench);
+    wrench.noalias() += chain.wrenches(k).lazyProduct(x.segment(at, m));
   }
-  return y;
 }
 
 Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment) {
@@ -62,58 +61,50 @@ Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment) {
   return r;
 }
 
-Eigen::VectorXd along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x) {
-  Eigen::VectorXd y(static_cast<Eigen::Index>(attachments.size()));
+void along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x,
+           Eigen::VectorXd& y) {
+  y.resize(static_cast<Eigen::Index>(attachments.size()));
   Vec6 twist = Vec6::Zero();
   int k = 0;
   for (std::size_t i = 0; i < attachments.size(); ++i) {
-    for (; k < attachments[i].link; ++k) twist += chain.twists(k) * x.segment(chain.first[k], chain.size(k));
+    for (; k < attachments[i].link; ++k)
+      twist.noalias() += chain.twists(k).lazyProduct(x.segment(chain.first[k], chain.size(k)));
     y[static_cast<Eigen::Index>(i)] =
         attachments[i].g.dot(twist) + attachments[i].b.dot(x.segment(chain.first[k], chain.size(k)));
   }
-  return y;
 }
 
-Eigen::VectorXd across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y) {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(chain.coordinates());
+void across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y,
+            Eigen::VectorXd& x) {
+  x.resize(chain.coordinates());
   Vec6 wrench = Vec6::Zero();
   auto left = static_cast<std::ptrdiff_t>(attachments.size()) - 1;
   for (int k = chain.links() - 1; k >= 0; --k) {
     auto own = x.segment(chain.first[k], chain.size(k));
-    own = chain.twists(k).transpose() * wrench;
+    own.noalias() = chain.twists(k).transpose().lazyProduct(wrench);
     for (; left >= 0 && attachments[static_cast<std::size_t>(left)].link == k; --left) {
       own += y[left] * attachments[static_cast<std::size_t>(left)].b;
       wrench += y[left] * attachments[static_cast<std::size_t>(left)].g;
     }
   }
-  return x;
 }
 
 namespace {
 
-/// Blocks of a link with M coordinates.
-template <int M>
-struct Sized {
-  using Wide = Eigen::Matrix<double, 6, M>;
-  using Square = Eigen::Matrix<double, M, M>;
-  using Vector = Eigen::Matrix<double, M, 1>;
-};
-
 /// The inverse of a symmetric matrix and the number of its negative eigenvalues, by elimination with pivots on the
 /// diagonal, the largest first; false where those do not suffice, as never happens if it is positive definite.
-template <class Square>
-bool invert_symmetric(const Square& S, Square& inverse, int& negative) {
-  using Vector = Eigen::Matrix<double, Square::RowsAtCompileTime, 1>;
+template <int M>
+bool invert_symmetric(const Square<M>& S, Square<M>& inverse, int& negative) {
   const Eigen::Index m = S.rows();
   inverse = -S;  // turns into the inverse row and column by row and column
-  Eigen::Array<bool, Square::RowsAtCompileTime, 1> done(m);
+  Eigen::Array<bool, M, 1, 0, kMost<M>, 1> done(m);
   done.setConstant(false);
   for (Eigen::Index step = 0; step < m; ++step) {
     Eigen::Index k = -1;
     for (Eigen::Index i = 0; i < m; ++i)
       if (!done[i] && (k < 0 || std::abs(inverse(i, i)) > std::abs(inverse(k, k)))) k = i;
     const double pivot = -inverse(k, k);
-    const Vector column = inverse.col(k), scaled = column / pivot;
+    const Vector<M> column = inverse.col(k), scaled = column / pivot;
     for (Eigen::Index i = 0; i < m; ++i)
       if (!done[i] && !(0.1 * std::abs(column[i]) <= std::abs(pivot))) return false;
     if (pivot < 0.0) ++negative;
@@ -132,18 +123,18 @@ int negative_eigenvalues(const Eigen::MatrixXd& S) {
 }
 
 /// The inverse of a pivot and how many of its eigenvalues are negative (if symmetric); false if singular.
-template <class Square>
-bool invert(const Square& S, bool symmetric, Square& inverse, int& negative) {
+template <int M>
+bool invert(const Square<M>& S, bool symmetric, Square<M>& inverse, int& negative) {
   if (!S.allFinite()) return false;
   if (symmetric) {
     int found = 0;
-    if (invert_symmetric(S, inverse, found)) {
+    if (invert_symmetric<M>(S, inverse, found)) {
       negative += found;
       return true;
     }
     negative += negative_eigenvalues(S);
   }
-  const Eigen::PartialPivLU<Square> lu(S);
+  const Eigen::PartialPivLU<Square<M>> lu(S);
   if (!(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > 1e-300)) return false;
   inverse = lu.inverse();
   return inverse.allFinite();
@@ -163,15 +154,15 @@ bool ChainFactor::factor_only(const Chain& chain) {
     if (m == 0) continue;
     const bool ok = with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const typename Sized<M>::Wide T = chain.T.middleCols<M>(at, m);
-      const typename Sized<M>::Wide PT = P * T;
-      const typename Sized<M>::Wide G = PT + chain.V.middleCols<M>(at, m);
-      typename Sized<M>::Square S = chain.D.block<M, M>(0, at, m, m);
+      const Columns<M> T = chain.T.middleCols<M>(at, m);
+      const Columns<M> PT = P * T;
+      const Columns<M> G = PT + chain.V.middleCols<M>(at, m);
+      Square<M> S = chain.D.block<M, M>(0, at, m, m);
       S.noalias() += T.transpose() * PT;
-      typename Sized<M>::Square inverse(m, m);
-      if (!invert(S, chain.symmetric(), inverse, negative_)) return false;
-      const typename Sized<M>::Wide Y = G * inverse;
-      typename Sized<M>::Wide C = G;
+      Square<M> inverse(m, m);
+      if (!invert<M>(S, chain.symmetric(), inverse, negative_)) return false;
+      const Columns<M> Y = G * inverse;
+      Columns<M> C = G;
       if (!chain.symmetric()) C = chain.U.middleCols<M>(at, m) + P.transpose() * T;
       P.noalias() -= Y * C.transpose();
       Y_.middleCols<M>(at, m) = Y;
@@ -199,13 +190,12 @@ bool ChainFactor::factor(const Chain& chain) {
   return ok;
 }
 
-Eigen::VectorXd ChainFactor::solve_transposed(const Eigen::VectorXd& b, Vec6* base) const {
-  return turned_ ? turned_->solve(b, Vec6::Zero(), base) : solve(b, Vec6::Zero(), base);
+void ChainFactor::solve_transposed(Eigen::VectorXd& x, Vec6* base) const {
+  (turned_ ? *turned_ : *this).solve(x, Vec6::Zero(), base);
 }
 
-Eigen::VectorXd ChainFactor::solve(const Eigen::VectorXd& b, const Vec6& tau, Vec6* base) const {
+void ChainFactor::solve(Eigen::VectorXd& x, const Vec6& tau, Vec6* base) const {
   const Chain& chain = *chain_;
-  Eigen::VectorXd x = b;
   Vec6 p = Vec6::Zero();
   for (int k = chain.links() - 1; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
@@ -223,12 +213,11 @@ Eigen::VectorXd ChainFactor::solve(const Eigen::VectorXd& b, const Vec6& tau, Ve
     with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
       auto own = x.segment<M>(at, m);
-      const typename Sized<M>::Vector left = own - C_.middleCols<M>(at, m).transpose() * twist;
+      const Vector<M> left = own - C_.middleCols<M>(at, m).transpose() * twist;
       own.noalias() = S_.block<M, M>(0, at, m, m) * left;
       twist.noalias() += chain.T.middleCols<M>(at, m) * own;
     });
   }
-  return x;
 }
 
 namespace {
@@ -252,15 +241,17 @@ struct Wrenches {
     of[4] -= v[4] * factor;
     of[5] -= v[5] * factor;
   }
-  Vec6 lane(int i) const {
-    Vec6 one;
-    for (int c = 0; c < 6; ++c) one[c] = of[c][i];
-    return one;
-  }
-  void set_lane(int i, const Vec6& one) {
-    for (int c = 0; c < 6; ++c) of[c][i] = one[c];
-  }
 };
+constexpr int kNumbers = 6 * kLanes;  ///< in them
+
+Wrenches load(const Eigen::MatrixXd& all, int i) {
+  Wrenches own;
+  std::memcpy(own.of, all.data() + static_cast<std::ptrdiff_t>(i) * kNumbers, sizeof(own.of));
+  return own;
+}
+void store(const Wrenches& own, Eigen::MatrixXd& all, int i) {
+  std::memcpy(all.data() + static_cast<std::ptrdiff_t>(i) * kNumbers, own.of, sizeof(own.of));
+}
 
 /// Copies the triangle below the diagonal of `from` to above that of `to` (which may be the same), block by block so
 /// that both stay in the cache.
@@ -278,7 +269,7 @@ void mirror(const Eigen::MatrixXd& from, Eigen::MatrixXd& to) {
 
 }  // namespace
 
-void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& turned_W,
+void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Condensed& room, Eigen::MatrixXd& turned_W,
                                  Matrix6X& arriving) const {
   const Chain& chain = *chain_;
   const auto count = static_cast<int>(attachments.size());
@@ -287,7 +278,9 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eig
 
   // Flexibility of the link ends from the base on, and with it the two six-vectors of each attachment: what it sees of
   // a wrench that arrives beyond its link is (alpha + beta) . wrench less what the link itself gives way.
-  Matrix6X alpha(6, count), gamma(6, count);
+  Matrix6X &alpha = room.alpha, &gamma = room.gamma;
+  alpha.resize(6, count);
+  gamma.resize(6, count);
   Mat6 F = Mat6::Zero();
   int next = 0;
   const int last_link = count > 0 ? attachments.back().link : -1;
@@ -295,28 +288,29 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eig
     const int at = chain.first[k], m = chain.size(k);
     with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const typename Sized<M>::Wide T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
-      const typename Sized<M>::Wide C = C_.middleCols<M>(at, m);
-      const typename Sized<M>::Square S = S_.block<M, M>(0, at, m, m);
+      const Columns<M> T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
+      const Columns<M> C = C_.middleCols<M>(at, m);
+      const Square<M> S = S_.block<M, M>(0, at, m, m);
       for (; next < count && attachments[next].link == k; ++next) {
-        const typename Sized<M>::Vector b = attachments[next].b;
-        const typename Sized<M>::Vector left = S.transpose() * b;
+        const Vector<M> b = attachments[next].b;
+        const Vector<M> left = S.transpose() * b;
         alpha.col(next).noalias() = F.transpose() * (attachments[next].g - C * left);
-        const typename Sized<M>::Vector given = left - Y.transpose() * alpha.col(next);
+        const Vector<M> given = left - Y.transpose() * alpha.col(next);
         gamma.col(next) = alpha.col(next) + T * given;
       }
       // F <- (1 - T S C^T) F (1 - Y T^T) + T S T^T
-      const typename Sized<M>::Wide TS = T * S;
+      const Columns<M> TS = T * S;
       const Eigen::Matrix<double, M, 6> CF = C.transpose() * F;
       F.noalias() -= TS * CF;
-      const typename Sized<M>::Wide FY = TS - F * Y;
+      const Columns<M> FY = TS - F * Y;
       F.noalias() += FY * T.transpose();
     });
   }
 
   // Wrenches on their way to the base, met by the attachments they pass; the last of them in the last lane.
   const int blocks = (count + kLanes - 1) / kLanes, shift = blocks * kLanes - count;
-  std::vector<Wrenches> moving(static_cast<std::size_t>(blocks));
+  Eigen::MatrixXd& moving = room.moving;
+  moving.setZero(kNumbers, blocks);
   int beyond = count;  // attachments of links beyond k: from this number on
   for (int k = last_link; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
@@ -324,9 +318,9 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eig
     while (own > 0 && attachments[own - 1].link == k) --own;
     with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const typename Sized<M>::Wide T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
+      const Columns<M> T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
       for (int block = blocks - 1; (block + 1) * kLanes > beyond + shift; --block) {
-        const Wrenches before = moving[static_cast<std::size_t>(block)];
+        const Wrenches before = load(moving, block);
         Wrenches after = before;
         for (int i = own; i < beyond; ++i) {
           // Lanes before `beyond` are still empty; what they leave in W is written over, or lies above the diagonal.
@@ -341,38 +335,36 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Eig
           const Lanes felt = before.dot(&T(0, c));
           after.subtract(&Y(0, c), felt);
         }
-        moving[static_cast<std::size_t>(block)] = after;
+        store(after, moving, block);
       }
-      const typename Sized<M>::Square S = S_.block<M, M>(0, at, m, m);
+      const Square<M> S = S_.block<M, M>(0, at, m, m);
       for (int l = own; l < beyond; ++l) {
-        const typename Sized<M>::Vector b = attachments[l].b;
+        const Vector<M> b = attachments[l].b;
         const Vec6 arrived = attachments[l].g - Y * b;
-        const typename Sized<M>::Vector right = S * b;
-        moving[static_cast<std::size_t>((l + shift) / kLanes)].set_lane((l + shift) % kLanes, arrived);
+        const Vector<M> right = S * b;
+        for (int c = 0; c < 6; ++c) moving(kLanes * c + (l + shift) % kLanes, (l + shift) / kLanes) = arrived[c];
         for (int i = own; i < beyond; ++i) turned_W(l, i) = alpha.col(i).dot(arrived) + attachments[i].b.dot(right);
       }
     });
     beyond = own;
   }
-  for (int l = 0; l < count; ++l)
-    arriving.col(l) = moving[static_cast<std::size_t>((l + shift) / kLanes)].lane((l + shift) % kLanes);
+  for (int l = 0; l < count; ++l) {
+    for (int c = 0; c < 6; ++c) arriving(c, l) = moving(kLanes * c + (l + shift) % kLanes, (l + shift) / kLanes);
+  }
 }
 
-ChainFactor::Condensed ChainFactor::condense(const std::vector<Attachment>& attachments) const {
-  Condensed condensed;
+void ChainFactor::condense(const std::vector<Attachment>& attachments, Condensed& condensed) const {
   if (chain_->symmetric()) {
-    condense_upper(attachments, condensed.W, condensed.arriving);
+    condense_upper(attachments, condensed, condensed.W, condensed.arriving);
     mirror(condensed.W, condensed.W);
     condensed.answering = condensed.arriving;
-    return condensed;
+    return;
   }
   // Below the diagonal: the upper part of the transposed matrix, turned.
-  Eigen::MatrixXd above;
-  condense_upper(attachments, above, condensed.arriving);
-  turned_->condense_upper(attachments, condensed.W, condensed.answering);
-  condensed.W.diagonal() = above.diagonal();
-  mirror(above, condensed.W);
-  return condensed;
+  condense_upper(attachments, condensed, condensed.above, condensed.arriving);
+  turned_->condense_upper(attachments, condensed, condensed.W, condensed.answering);
+  condensed.W.diagonal() = condensed.above.diagonal();
+  mirror(condensed.above, condensed.W);
 }
 
 }  // namespace sinew::linalg

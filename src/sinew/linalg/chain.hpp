@@ -13,6 +13,8 @@
 #include <memory>
 #include <vector>
 
+#include "sinew/linalg/sized.hpp"
+
 namespace sinew::linalg {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -43,23 +45,25 @@ Chain make_chain(const std::vector<int>& sizes, bool symmetric);
 /// The matrix written out, for tests and for the solver of last resort.
 Eigen::MatrixXd dense(const Chain& chain);
 
-/// A x + U^T tau: what all links answer to x when the base moves by the twist tau.
-Eigen::VectorXd multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau = Vec6::Zero());
+/// y = A x + U^T tau: what all links answer to x when the base moves by the twist tau.
+void multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y);
 
 /// What couples one outside unknown to a chain: for every link nearer to the base than `link` the wrench `g`, as
 /// T_j^T g, and for the link itself the vector `b`.
 struct Attachment {
   int link = 0;
   Vec6 g = Vec6::Zero();
-  Eigen::VectorXd b;
+  Vector<Eigen::Dynamic> b;
 };
 
 /// The vector of an attachment over all coordinates.
 Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment);
 
-/// R x for attachments sorted by link, and R^T y.
-Eigen::VectorXd along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x);
-Eigen::VectorXd across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y);
+/// y = R x for attachments sorted by link, and x = R^T y.
+void along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x,
+           Eigen::VectorXd& y);
+void across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y,
+            Eigen::VectorXd& x);
 
 /// A = L S R factored from the tip to the base; no pivoting between links.
 class ChainFactor {
@@ -69,11 +73,11 @@ class ChainFactor {
   /// Negative eigenvalues of a symmetric A (Sylvester): 0 exactly where it is positive definite.
   int negative() const { return negative_; }
 
-  /// x = A^-1 (b - U^T tau). `base`, if given, receives sum_k V_k x_k: the wrench that the base feels.
-  Eigen::VectorXd solve(const Eigen::VectorXd& b, const Vec6& tau = Vec6::Zero(), Vec6* base = nullptr) const;
+  /// x <- A^-1 (x - U^T tau). `base`, if given, receives sum_k V_k x_k: the wrench that the base feels.
+  void solve(Eigen::VectorXd& x, const Vec6& tau = Vec6::Zero(), Vec6* base = nullptr) const;
 
-  /// A^-T b, and U of it as the base feels it.
-  Eigen::VectorXd solve_transposed(const Eigen::VectorXd& b, Vec6* base = nullptr) const;
+  /// x <- A^-T x, and U of it as the base feels it.
+  void solve_transposed(Eigen::VectorXd& x, Vec6* base = nullptr) const;
 
   /// The wrench the base feels per twist of the base, -V A^-1 U^T.
   const Mat6& base_response() const { return base_; }
@@ -83,13 +87,20 @@ class ChainFactor {
     Eigen::MatrixXd W;   ///< R A^-1 R^T
     Matrix6X arriving;   ///< 6 x count: g_i - V A^-1 R_i^T, the wrench that the base feels
     Matrix6X answering;  ///< 6 x count: g_i - U A^-T R_i^T, what an attachment feels of a twist of the base
+
+   private:
+    friend class ChainFactor;
+    Matrix6X alpha, gamma;  // room to work in
+    Eigen::MatrixXd moving, above;
   };
-  Condensed condense(const std::vector<Attachment>& attachments) const;
+  /// Memory of an earlier result is used again.
+  void condense(const std::vector<Attachment>& attachments, Condensed& condensed) const;
 
  private:
   bool factor_only(const Chain& chain);
   /// The upper triangle of W, turned: below the diagonal of `turned_W`. Above stands anything.
-  void condense_upper(const std::vector<Attachment>& attachments, Eigen::MatrixXd& turned_W, Matrix6X& arriving) const;
+  void condense_upper(const std::vector<Attachment>& attachments, Condensed& room, Eigen::MatrixXd& turned_W,
+                      Matrix6X& arriving) const;
 
   const Chain* chain_ = nullptr;
   /// Of an unsymmetric matrix its transposed, in which U and V change places.

@@ -16,6 +16,11 @@ struct Kernels {
   /// diagonal. Above the diagonal anything is left. False where a pivot, an entry of D, is zero or not finite.
   bool (*factor)(double* panel, int stride, int columns, int height, double* pivots, double* signs);
 
+  /// The same of a square one whose rows begin with zeros, which stay: `begin` has the first column that is not zero of
+  /// each kLanes rows. A pivot smaller than the size of its number in `least` is replaced by that number.
+  bool (*factor_profile)(double* panel, int stride, int columns, const int* begin, const double* least, double* pivots,
+                         double* signs);
+
   /// C <- C - A S A^T, or -A S A^T where C is `fresh`: its first `columns` columns from the diagonal down to `height`;
   /// beside the diagonal anything is left above it. A is height x depth, `signs` the diagonal of S.
   void (*update)(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,

@@ -22,7 +22,26 @@ struct Product {
   const double *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
   int stride, depth;
   const double* signs;
-  double sign = 1.0;  ///< of all, where they are alike
+  double sign = 1.0;           ///< of all, where they are alike
+  const int* begin = nullptr;  ///< of each kLanes rows of A the first column that is not zero; null: all from 0
+  int least_begin = 0;         ///< and of the rows of B
+
+  /// That of `rows` rows from `row` on, without the columns that are zero in all of them.
+  Product from(int row, int rows) const {
+    Product own = *this;
+    own.A += row;
+    if (!begin) return own;
+    int first = depth;
+    for (int block = row / kLanes; block * kLanes < row + rows; ++block)
+      first = begin[block] < first ? begin[block] : first;
+    if (first < least_begin) first = least_begin;
+    if (first > depth) first = depth;
+    own.A += static_cast<long>(first) * stride;
+    own.B += static_cast<long>(first) * stride;
+    own.signs += first;
+    own.depth -= first;
+    return own;
+  }
 };
 
 /// C <- C - A S B^T or -A S B^T, for one tile.
@@ -57,33 +76,29 @@ void tile(double* C, int stride, const Product& product, bool fresh) {
   }
 }
 
-/// The same for `rows` (whole registers) of `across` columns.
+/// The same for the rows `top` .. before `height`, to whole registers, of `across` columns.
 template <int across, bool turned>
-void strip(double* C, int stride, const Product& product, int rows, bool fresh) {
-  int row = 0;
+void strip(double* C, int stride, const Product& product, int top, int height, bool fresh) {
+  int row = top;
   const auto tiles = [&]<int down>() {
-    for (; row + kWidth * down <= rows; row += kWidth * down) {
-      Product own = product;
-      own.A += row;
-      tile<down, across, turned>(C + row, stride, own, fresh);
+    for (; row + kWidth * (down - 1) < height; row += kWidth * down) {
+      const Product own = product.from(row, kWidth * down);
+      if (own.depth > 0 || fresh) tile<down, across, turned>(C + row, stride, own, fresh);
     }
   };
   tiles.template operator()<kDown>();
   tiles.template operator()<1>();
 }
 
-/// C <- C - A S A^T as in Kernels::update; rows and columns of C begin with the row `top` of A.
+/// C <- C - A S A^T as in Kernels::update.
 template <bool turned>
-void rank_update(double* C, int C_stride, Product product, int height, int columns, bool fresh) {
-  const double* A = product.A;
+void rank_update(double* C, int C_stride, const Product& product, int height, int columns, bool fresh) {
   int j = 0;
   const auto strips = [&]<int across>() {
     for (; j + across <= columns; j += across) {
-      const int top = j / kWidth * kWidth;
-      product.A = A + top;
-      product.B = A + j;
-      const int rows = (height - top + kWidth - 1) / kWidth * kWidth;
-      strip<across, turned>(C + static_cast<long>(j) * C_stride + top, C_stride, product, rows, fresh);
+      Product own = product;
+      own.B += j;
+      strip<across, turned>(C + static_cast<long>(j) * C_stride, C_stride, own, j / kWidth * kWidth, height, fresh);
     }
   };
   strips.template operator()<kAcross>();
@@ -92,16 +107,20 @@ void rank_update(double* C, int C_stride, Product product, int height, int colum
   strips.template operator()<1>();
 }
 
-void update(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
-            const double* signs, bool fresh) {
+void update(double* C, int C_stride, Product product, int height, int columns, bool fresh) {
   bool mixed = false;  // rarely: where an indefinite matrix changes its sign
-  for (int k = 1; k < depth; ++k) mixed |= signs[k] != signs[0];
-  const Product product{A, A, A_stride, depth, signs, depth > 0 ? signs[0] : 1.0};
+  for (int k = 1; k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
+  product.sign = product.depth > 0 ? product.signs[0] : 1.0;
   if (mixed) {
     rank_update<true>(C, C_stride, product, height, columns, fresh);
   } else {
     rank_update<false>(C, C_stride, product, height, columns, fresh);
   }
+}
+
+void update(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
+            const double* signs, bool fresh) {
+  update(C, C_stride, Product{A, A, A_stride, depth, signs}, height, columns, fresh);
 }
 
 constexpr int kBlock = 8;  ///< columns of a panel that are factored together
@@ -144,32 +163,70 @@ void divide(int columns, double* P, int stride, int rows, const double (&U)[kBlo
   }
 }
 
-bool factor(double* panel, int stride, int columns, int height, double* pivots, double* signs) {
+/// What factor_profile says of a matrix; nothing of any other.
+struct Profile {
+  const int* begin = nullptr;
+  const double* least = nullptr;
+};
+
+bool factor(double* panel, int stride, int columns, int height, const Profile& profile, double* pivots, double* signs) {
+  static_assert(kBlock == kLanes);
   for (int first = 0; first < columns; first += kBlock) {
     const int count = columns - first < kBlock ? columns - first : kBlock;
     double* block = panel + static_cast<long>(first) * stride + first;
-    if (first > 0) update(block, stride, panel + first, stride, height - first, count, first, signs, false);
+    if (first > 0) {
+      Product before{panel + first, panel + first, stride, first, signs};
+      if (profile.begin) {
+        before.begin = profile.begin + first / kLanes;
+        before.least_begin = *before.begin;
+      }
+      update(block, stride, before, height - first, count, false);
+    }
     // The square on the diagonal is factored apart; all rows, its own too, are then divided by it.
-    double square[kBlock][kBlock], U[kBlock][kBlock], inverse[kBlock];
+    double square[kBlock][kBlock], U[kBlock][kBlock], inverse[kBlock], root[kBlock];
     for (int j = 0; j < count; ++j) {
       for (int r = j; r < count; ++r) {
         square[j][r] = block[static_cast<long>(j) * stride + r];
         for (int i = 0; i < j; ++i) square[j][r] -= square[i][r] * U[i][j];
       }
-      const double d = square[j][j], size = __builtin_fabs(d);
+      double& d = square[j][j];
+      if (profile.least && __builtin_fabs(d) < __builtin_fabs(profile.least[first + j])) d = profile.least[first + j];
+      const double size = __builtin_fabs(d), sign = d < 0.0 ? -1.0 : 1.0;
       if (!(size > 0.0) || !(size <= __DBL_MAX__)) return false;
-      const double sign = d < 0.0 ? -1.0 : 1.0;
       pivots[first + j] = d;
       signs[first + j] = sign;
-      inverse[j] = sign / __builtin_sqrt(size);
+      root[j] = __builtin_sqrt(size);
+      inverse[j] = sign / root[j];
       for (int r = j; r < count; ++r) {
         square[j][r] *= inverse[j];
         U[j][r] = sign * square[j][r];
       }
     }
-    divide(count, block, stride, (height - first + kWidth - 1) / kWidth * kWidth, U, inverse);
+    // Runs of rows that have begun.
+    const int rows = height - first;
+    const auto begun = [&](int row) { return profile.begin[(first + row) / kLanes] < first + count; };
+    for (int from = 0, end; from < rows; from = end) {
+      end = rows;
+      if (profile.begin) {
+        end = from + kLanes;
+        while (end < rows && begun(end) == begun(from)) end += kLanes;
+        if (!begun(from)) continue;
+      }
+      const int own = (end < rows ? end : rows) - from;
+      divide(count, block + from, stride, (own + kWidth - 1) / kWidth * kWidth, U, inverse);
+    }
+    for (int j = 0; j < count; ++j) block[static_cast<long>(j) * stride + j] = root[j];  // also where d was replaced
   }
   return true;
+}
+
+bool factor(double* panel, int stride, int columns, int height, double* pivots, double* signs) {
+  return factor(panel, stride, columns, height, Profile{}, pivots, signs);
+}
+
+bool factor_profile(double* panel, int stride, int columns, const int* begin, const double* least, double* pivots,
+                    double* signs) {
+  return factor(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
 }
 
 void multiply(const double* A, int stride, int height, int columns, const double* x, double* y) {
@@ -244,6 +301,7 @@ void solve_transposed(const double* panel, int stride, int columns, double* x) {
 
 }  // namespace
 
-const Kernels SINEW_KERNELS{SINEW_NAME, factor, update, solve, solve_transposed, multiply, multiply_transposed};
+const Kernels SINEW_KERNELS{SINEW_NAME, factor,           factor_profile, update,
+                            solve,      solve_transposed, multiply,       multiply_transposed};
 
 }  // namespace sinew::linalg

@@ -6,6 +6,9 @@
 
 namespace sinew::linalg {
 
+/// No small matrix is larger.
+constexpr int kLargest = 36;
+
 /// f(the number m as a constant): 1 .. 6 as they are, everything else as Eigen::Dynamic.
 template <class F>
 auto with_size(Eigen::Index m, const F& f) {
@@ -26,5 +29,15 @@ auto with_size(Eigen::Index m, const F& f) {
       return f(std::integral_constant<int, Eigen::Dynamic>{});
   }
 }
+
+/// Matrices of a size known or not, which live on the stack.
+template <int M>
+constexpr int kMost = M == Eigen::Dynamic ? kLargest : M;
+template <int M>
+using Columns = Eigen::Matrix<double, 6, M, 0, 6, kMost<M>>;
+template <int M>
+using Square = Eigen::Matrix<double, M, M, 0, kMost<M>, kMost<M>>;
+template <int M>
+using Vector = Eigen::Matrix<double, M, 1, 0, kMost<M>, 1>;
 
 }  // namespace sinew::linalg

@@ -47,6 +47,10 @@ SparseFactor::SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& ke
   for (const Front& front : plan_->fronts)
     largest_ = std::max(largest_, static_cast<std::size_t>(whole_lanes(front.rows()) + kLanes));
   minus_W_.setZero(borders() > 0 ? whole_lanes(borders()) + kLanes : 0, borders());
+  own_.setZero(static_cast<Eigen::Index>(largest_));
+  below_ = own_;
+  whole_.setZero(size());
+  bordering_.setZero(whole_lanes(borders()) + kLanes);
 }
 
 void SparseFactor::clear() { std::fill(panels_.begin(), panels_.end(), 0.0); }
@@ -130,84 +134,77 @@ double SparseFactor::scaled_condition() const {
       Eigen::VectorXd::NullaryExpr(size(), [](Eigen::Index i) { return std::sin(1.0 + 0.7 * static_cast<double>(i)); });
   double growth = 1.0;
   for (int i = 0; i < 3; ++i) {  // inverse iteration: the first turn finds the direction but for the square root of n
-    y = scale.cwiseProduct(back_solve(half_solve(scale.cwiseProduct(y / y.norm()))));
+    y = scale.cwiseProduct(solve(scale.cwiseProduct(y / y.norm())));
     growth = y.norm();
   }
   return growth;
 }
 
-Eigen::MatrixXd SparseFactor::half_solve(const Eigen::MatrixXd& B) const {
-  Eigen::MatrixXd Y(B.rows(), B.cols());
-  std::vector<double> own(largest_), below(largest_);
-  for (Eigen::Index c = 0; c < B.cols(); ++c) {
-    auto y = Y.col(c);
-    for (int i = 0; i < size(); ++i) y[plan_->place[i]] = B(i, c);
-    for (const Front& front : plan_->fronts) {
-      const double* panel = panels_.data() + front.panel;
-      std::copy_n(&y[front.first], front.columns, own.begin());
-      kernels_->solve(panel, front.stride, front.columns, own.data());
-      std::copy_n(own.begin(), front.columns, &y[front.first]);
-      std::fill_n(below.begin(), whole_lanes(front.below), 0.0);
-      kernels_->multiply(panel + front.columns, front.stride, front.below, front.columns, own.data(), below.data());
-      const std::span<const int> rows = plan_->rows_below(front);
-      for (std::size_t i = 0; i < rows.size(); ++i) y[rows[i]] += below[i];
-    }
+void SparseFactor::half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const {
+  for (int i = 0; i < size(); ++i) y[plan_->place[i]] = b[i];
+  for (const Front& front : plan_->fronts) {
+    const double* panel = panels_.data() + front.panel;
+    std::copy_n(&y[front.first], front.columns, own_.data());
+    kernels_->solve(panel, front.stride, front.columns, own_.data());
+    std::copy_n(own_.data(), front.columns, &y[front.first]);
+    std::fill_n(below_.data(), whole_lanes(front.below), 0.0);
+    kernels_->multiply(panel + front.columns, front.stride, front.below, front.columns, own_.data(), below_.data());
+    const std::span<const int> rows = plan_->rows_below(front);
+    for (std::size_t i = 0; i < rows.size(); ++i) y[rows[i]] += below_[static_cast<Eigen::Index>(i)];
   }
-  return Y;
 }
 
-Eigen::VectorXd SparseFactor::back_solve(const Eigen::VectorXd& y) const {
-  Eigen::VectorXd x = signs_.cwiseProduct(y);
-  std::vector<double> below(largest_);
+void SparseFactor::back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const {
+  whole_ = signs_.cwiseProduct(y);
   for (auto front = plan_->fronts.rbegin(); front != plan_->fronts.rend(); ++front) {
     const double* panel = panels_.data() + front->panel;
     const std::span<const int> rows = plan_->rows_below(*front);
-    for (std::size_t i = 0; i < rows.size(); ++i) below[i] = x[rows[i]];
-    double* own = x.data() + front->first;
-    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below, front->columns, below.data(),
+    for (std::size_t i = 0; i < rows.size(); ++i) below_[static_cast<Eigen::Index>(i)] = whole_[rows[i]];
+    double* own = whole_.data() + front->first;
+    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below, front->columns, below_.data(),
                                   own);
     kernels_->solve_transposed(panel, front->stride, front->columns, own);
   }
-  Eigen::VectorXd solved(y.size());
-  for (int i = 0; i < size(); ++i) solved[i] = x[plan_->place[i]];
-  return solved;
+  for (int i = 0; i < size(); ++i) x[i] = whole_[plan_->place[i]];
 }
 
-Eigen::MatrixXd SparseFactor::compliance() const {
-  Eigen::MatrixXd W(borders(), borders());
-  for (int i = 0; i < borders(); ++i) {
-    for (int j = 0; j < borders(); ++j) {
+Eigen::VectorXd SparseFactor::solve(const Eigen::Ref<const Eigen::VectorXd>& b) const {
+  Eigen::VectorXd y(size()), x(size());
+  half_solve(b, y);
+  back_solve(y, x);
+  return x;
+}
+
+void SparseFactor::compliance(Eigen::MatrixXd& W) const {
+  W.resize(borders(), borders());
+  for (int j = 0; j < borders(); ++j) {
+    for (int i = 0; i <= j; ++i) {
       const auto [column, row] = std::minmax({plan_->border[i], plan_->border[j]});
-      W(i, j) = -minus_W_(row, column);
+      W(j, i) = W(i, j) = -minus_W_(row, column);
     }
   }
-  return W;
 }
 
-Eigen::MatrixXd SparseFactor::border_times(const Eigen::MatrixXd& Y) const {
-  Eigen::MatrixXd product(borders(), Y.cols());
-  std::vector<double> minus(static_cast<std::size_t>(whole_lanes(borders()) + kLanes));
-  for (Eigen::Index c = 0; c < Y.cols(); ++c) {
-    const Eigen::VectorXd y = Y.col(c);
-    std::fill(minus.begin(), minus.end(), 0.0);
-    for (const Front& front : plan_->fronts) {
-      const double* border = panels_.data() + front.panel + front.rows();
-      kernels_->multiply(border, front.stride, front.borders, front.columns, &y[front.first], &minus[front.border]);
-    }
-    for (int i = 0; i < borders(); ++i) product(i, c) = -minus[plan_->border[i]];
-  }
-  return product;
-}
-
-Eigen::VectorXd SparseFactor::border_transposed_times(const Eigen::VectorXd& u) const {
-  Eigen::VectorXd sorted(borders()), y = Eigen::VectorXd::Zero(size());
-  for (int i = 0; i < borders(); ++i) sorted[plan_->border[i]] = -u[i];
+void SparseFactor::border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const {
+  bordering_.setZero();
   for (const Front& front : plan_->fronts) {
     const double* border = panels_.data() + front.panel + front.rows();
-    kernels_->multiply_transposed(border, front.stride, front.borders, front.columns, sorted.data() + front.border,
-                                  y.data() + front.first);
+    kernels_->multiply(border, front.stride, front.borders, front.columns, y.data() + front.first,
+                       &bordering_[front.border]);
   }
-  return signs_.cwiseProduct(y);
+  for (int i = 0; i < borders(); ++i) u[i] = -bordering_[plan_->border[i]];
+}
+
+void SparseFactor::add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u,
+                                         Eigen::Ref<Eigen::VectorXd> y) const {
+  for (int i = 0; i < borders(); ++i) bordering_[plan_->border[i]] = -u[i];
+  whole_.setZero();
+  for (const Front& front : plan_->fronts) {
+    const double* border = panels_.data() + front.panel + front.rows();
+    kernels_->multiply_transposed(border, front.stride, front.borders, front.columns, bordering_.data() + front.border,
+                                  whole_.data() + front.first);
+  }
+  y += signs_.cwiseProduct(whole_);
 }
 
 }  // namespace sinew::linalg

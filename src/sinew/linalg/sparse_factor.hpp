@@ -49,17 +49,19 @@ class SparseFactor {
   std::size_t entries() const { return plan_->entries(); }
   /// S, as a vector.
   const Eigen::VectorXd& signs() const { return signs_; }
-  /// R B: with X = half_solve(B), B^T A^-1 B = X^T S X.
-  Eigen::MatrixXd half_solve(const Eigen::MatrixXd& B) const;
-  /// R^T S y: the second half, A^-1 b = back_solve(half_solve(b)).
-  Eigen::VectorXd back_solve(const Eigen::VectorXd& y) const;
+  /// y = R b: with X made of such columns, B^T A^-1 B = X^T S X.
+  void half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const;
+  /// x = R^T S y: the second half of A^-1 b.
+  void back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const;
+  /// x = A^-1 b.
+  Eigen::VectorXd solve(const Eigen::Ref<const Eigen::VectorXd>& b) const;
 
-  /// H A^-1 H^T, in the order of the rows.
-  Eigen::MatrixXd compliance() const;
-  /// H R^T S Y: H A^-1 B for Y = R B.
-  Eigen::MatrixXd border_times(const Eigen::MatrixXd& Y) const;
-  /// R H^T u.
-  Eigen::VectorXd border_transposed_times(const Eigen::VectorXd& u) const;
+  /// W = H A^-1 H^T, in the order of the rows.
+  void compliance(Eigen::MatrixXd& W) const;
+  /// u = H R^T S y: H A^-1 b for y = R b.
+  void border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const;
+  /// y += R H^T u.
+  void add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::Ref<Eigen::VectorXd> y) const;
 
  private:
   bool factor_fronts();
@@ -73,6 +75,7 @@ class SparseFactor {
   Eigen::MatrixXd minus_W_;  ///< -H A^-1 H^T below its diagonal, in the order of the plan
   std::size_t largest_ = 0;  ///< [doubles] that hold any front's unknowns
   int negative_ = 0;
+  mutable Eigen::VectorXd own_, below_, whole_, bordering_;  ///< room for solves: one thread at a time
 };
 
 }  // namespace sinew::linalg

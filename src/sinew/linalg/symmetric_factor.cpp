@@ -1,36 +1,35 @@
 #include "sinew/linalg/symmetric_factor.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sinew::linalg {
 
-bool SymmetricFactor::factor(const Eigen::MatrixXd& A, std::span<const int> order, double vanished) {
-  const auto n = static_cast<int>(A.rows());
-  order_.assign(order.begin(), order.end());
+void SymmetricFactor::start(int n) {
+  size_ = n;
   stride_ = whole_lanes(n);
-  panel_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(n), 0.0);
-  pivots_.setZero(n);
-  signs_.setOnes(n);
-  for (int j = 0; j < n; ++j) {
-    double* column = panel_.data() + static_cast<std::ptrdiff_t>(j) * stride_;
-    for (int i = j; i < n; ++i) column[i] = A(order_[i], order_[j]);
-  }
-  if (!kernels_->factor(panel_.data(), stride_, n, n, pivots_.data(), signs_.data())) return false;
-  return n == 0 || pivots_.cwiseAbs().minCoeff() > vanished * pivots_.cwiseAbs().maxCoeff();
+  // A block is divided as whole registers, so that rows beside the last may be written.
+  panel_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(n) + kLanes);
+  for (int j = 0; j < n; ++j) std::fill(column(j) + j / kLanes * kLanes, column(j) + stride_, 0.0);
 }
 
-Eigen::VectorXd SymmetricFactor::solve(const Eigen::VectorXd& b) const {
-  const auto n = static_cast<int>(b.size());
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(stride_ + kLanes), x(n);
-  for (int i = 0; i < n; ++i) y[i] = b[order_[i]];
-  kernels_->solve(panel_.data(), stride_, n, y.data());
-  y.head(n).array() *= signs_.array();
-  kernels_->solve_transposed(panel_.data(), stride_, n, y.data());
-  for (int i = 0; i < n; ++i) x[order_[i]] = y[i];
-  return x;
+bool SymmetricFactor::factor(std::span<const int> begin, std::span<const double> least) {
+  begin_.assign(static_cast<std::size_t>(stride_ / kLanes) + 1, size_);
+  for (int i = 0; i < size_; ++i) begin_[i / kLanes] = std::min(begin_[i / kLanes], begin[i]);
+  pivots_.resize(static_cast<std::size_t>(size_));
+  signs_.resize(static_cast<std::size_t>(size_));
+  return kernels_->factor_profile(panel_.data(), stride_, size_, begin_.data(), least.data(), pivots_.data(),
+                                  signs_.data());
 }
 
-int SymmetricFactor::negative() const { return static_cast<int>((signs_.array() < 0.0).count()); }
+void SymmetricFactor::solve(double* b) const {
+  std::fill(b + size_, b + stride_, 0.0);
+  kernels_->solve(panel_.data(), stride_, size_, b);
+  for (int i = 0; i < size_; ++i) b[i] *= signs_[i];
+  kernels_->solve_transposed(panel_.data(), stride_, size_, b);
+}
+
+int SymmetricFactor::negative() const {
+  return static_cast<int>(std::count_if(signs_.begin(), signs_.end(), [](double sign) { return sign < 0.0; }));
+}
 
 }  // namespace sinew::linalg

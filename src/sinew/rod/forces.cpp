@@ -76,16 +76,9 @@ class Beyond {
   Vec3 moment_ = Vec3::Zero();   ///< sum of the moments that stay
 };
 
-/// Matrices of a section with M coordinates.
-constexpr int kColumns = 6 * (kHighestDegree + 1);
-template <int M>
-constexpr int kMost = M == Eigen::Dynamic ? kColumns : M;
-template <int M>
-using Columns = Eigen::Matrix<double, 6, M, 0, 6, kMost<M>>;
-template <int M>
-using Square = Eigen::Matrix<double, M, M, 0, kMost<M>, kMost<M>>;
-template <int M>
-using Vector = Eigen::Matrix<double, M, 1, 0, kMost<M>, 1>;
+using linalg::Columns;
+using linalg::Square;
+using linalg::Vector;
 
 /// What a chain of exponentials does to the loads beyond it, as its section's coordinates see it.
 template <int M>

@@ -7,7 +7,8 @@ namespace sinew::rod {
 namespace {
 
 /// Exponentials one after another from a frame on; returns the last frame.
-void walk(const Weights& weights, const Coefficients& strains, Mat3& R, Vec3& p, std::vector<Piece>& pieces) {
+template <class Sequence>
+void walk(const Weights& weights, const Coefficients& strains, Mat3& R, Vec3& p, Sequence& pieces) {
   for (Eigen::Index j = 0; j < weights.rows(); ++j) {
     Vec6 W = weights(j, 0) * strains.col(0);
     for (Eigen::Index d = 1; d < strains.cols(); ++d) W += weights(j, d) * strains.col(d);
@@ -44,6 +45,11 @@ Configuration configure(const Rod& rod, const Placement& base, const Eigen::Vect
 
 Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q) {
   Configuration shape;
+  configure(rod, base, q, shape);
+  return shape;
+}
+
+void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape) {
   shape.rod = &rod;
   shape.origin = base.rest.p;
   const int N = rod.count();
@@ -64,6 +70,12 @@ Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd&
     R = R * lie::exp(q[i] * axis);
   }
 
+  shape.R.clear();
+  shape.p.clear();
+  shape.strains.clear();
+  shape.first_step.clear();
+  shape.steps.clear();
+  shape.pieces.clear();
   shape.R.reserve(N + 1);
   shape.p.reserve(N + 1);
   shape.R.push_back(R);
@@ -93,7 +105,6 @@ Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd&
     shape.R.push_back(R);
     shape.p.push_back(p);
   }
-  return shape;
 }
 
 Branch branch(const Configuration& shape, double s) {
@@ -116,7 +127,6 @@ void branch_in(const Configuration& shape, int i, int step, double s, Branch& br
   branch.R = shape.steps[step].R;
   branch.p = shape.steps[step].p;
   branch.pieces.clear();
-  branch.pieces.reserve(static_cast<std::size_t>(branch.weights.value.rows()));
   walk(branch.weights.value, strains, branch.R, branch.p, branch.pieces);
 }
 
@@ -154,15 +164,20 @@ Vec3 position(const Configuration& shape, double s, const Vec3& offset) {
 }
 
 Eigen::Matrix3Xd mass_positions(const Configuration& shape) {
+  Eigen::Matrix3Xd positions;
+  mass_positions(shape, positions);
+  return positions;
+}
+
+void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions) {
   const std::vector<MassPoint>& masses = shape.rod->masses;
-  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(masses.size()));
+  positions.resize(3, static_cast<Eigen::Index>(masses.size()));
   Branch at;
   double s = -1.0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     if (masses[i].s != s) at = branch(shape, s = masses[i].s);  // several stand at each abscissa
     positions.col(static_cast<Eigen::Index>(i)) = at.p + at.R * masses[i].offset;
   }
-  return positions;
 }
 
 Matrix6X twists_at(const Configuration& shape, double s) {

@@ -1,6 +1,7 @@
 // Where the material points of a rod are, and how they move when its coordinates change: (2), (3), (4) and (5).
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -12,10 +13,12 @@ namespace sinew::rod {
 
 using linalg::Matrix6X;
 /// Twists of the coordinates of one section: 6 x m.
-using SectionTwists = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6 * (kHighestDegree + 1)>;
+using SectionTwists = linalg::Columns<Eigen::Dynamic>;
+static_assert(linalg::kLargest == 6 * (kHighestDegree + 1));
 
 /// One exponential: the frame (R, p) times exp(phi, rho).
 struct Piece {
+  Piece() = default;  ///< nothing yet
   Piece(const Mat3& frame, const Vec3& start, const Vec6& W)
       : R(frame), p(start), phi(W.head<3>()), rho(W.tail<3>()), maps(lie::RotationMap::both(phi)) {
     tip = p + R * (tangent() * rho);
@@ -30,6 +33,22 @@ struct Piece {
   Vec3 phi, rho;
   std::array<lie::RotationMap, 2> maps;
   Vec3 tip;
+};
+
+/// The few exponentials of one step.
+class Pieces {
+ public:
+  void clear() { count_ = 0; }
+  const Piece& emplace_back(const Mat3& frame, const Vec3& start, const Vec6& W) {
+    return all_[count_++] = Piece(frame, start, W);
+  }
+  std::size_t size() const { return count_; }
+  const Piece& operator[](std::size_t j) const { return all_[j]; }
+  operator std::span<const Piece>() const { return {all_.data(), count_}; }
+
+ private:
+  std::array<Piece, kExponentials> all_;
+  std::size_t count_ = 0;
 };
 
 /// The base of a rod: its placement at rest in the world, and how far it has been turned since (free bases only).
@@ -60,18 +79,20 @@ struct Configuration {
 
 /// (3), (4) from the base's placement and q.
 Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q);
+/// The same in the memory of an earlier one.
+void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape);
 Configuration configure(const Rod& rod, const Placement& base, const Eigen::VectorXd& q);
 
 /// The exponentials from the start of a step to an abscissa in it, and how they change with it.
 struct Branch {
   int section = 0, step = 0;  ///< step: in Configuration::steps
   PartialWeights weights;
-  std::vector<Piece> pieces;
+  Pieces pieces;
   Mat3 R;
   Vec3 p;
 };
 Branch branch(const Configuration& shape, double s);
-/// The same in a step known already, given as in Branch; `branch` is written over and keeps its memory.
+/// The same in a step known already, given as in Branch; `branch` is written over.
 void branch_in(const Configuration& shape, int section, int step, double s, Branch& branch);
 
 /// A point on the centreline.
@@ -90,6 +111,7 @@ Vec3 position(const Configuration& shape, double s, const Vec3& offset = Vec3::Z
 
 /// Where the mass points are, 3 x count [m].
 Eigen::Matrix3Xd mass_positions(const Configuration& shape);
+void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions);
 
 /// Twist of every coordinate as felt at abscissa s, 6 x n; zero beyond it.
 Matrix6X twists_at(const Configuration& shape, double s);

@@ -166,7 +166,8 @@ Layout lay_along(const Path& path, const std::vector<double>& ends, const Vec3& 
     layout.deviation = fit.linearize(q, q0, gradient, matrix);
     linalg::ChainFactor factor;
     if (layout.deviation <= 1e-12 * path.length() || !factor.factor(matrix)) break;
-    const Eigen::VectorXd dq = factor.solve(gradient);
+    Eigen::VectorXd dq = gradient;
+    factor.solve(dq);
     q -= dq;
     if (dq.norm() <= 1e-12 * (1.0 + q.norm())) break;
   }

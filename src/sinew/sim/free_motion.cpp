@@ -10,18 +10,6 @@
 
 namespace sinew {
 
-StepContext make_context(const Model& model, const State& start, const Command& command, double h) {
-  const double rate = model.scene.analysis == Analysis::dynamic ? 1.0 / h : 0.0;
-  StepContext context{model, start, h, rate, command, model.scene.gravity, false, {}, {}, {}, {}};
-  for (const auto& [name, frame] : model.scene.frames)
-    context.displacement.push_back(frame_displacement(frame, start.time + h));
-  for (const SolidState& solid : start.solids) context.solids.push_back({solid.x, solid.v, rate});
-  for (const RodModel& rod : model.rods) context.bases.push_back(compose(context.moved(rod.frame), rod.base));
-  for (const CableModel& cable : model.cables)
-    context.cable_bases.push_back(compose(context.moved(cable.frame), cable.base));
-  return context;
-}
-
 namespace {
 
 /// Loads of one volume, each with its factor at the end of the step.
@@ -35,43 +23,13 @@ void each_load(const StepContext& context, int number, const Visit& visit) {
 
 bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
 
-/// The antisymmetric part of the pressures' tangents.
-void add_rim(const StepContext& context, const Workspace::Solid& memory, const State& iterate, int number,
-             FreeMotion& free) {
-  const SolidModel& model = context.model.solids[number];
-  std::vector<int> unknowns;
-  Eigen::MatrixXd N;
-  each_load(context, number, [&](const SolidLoadModel& load, double factor) {
-    if (load.conservative() || factor == 0.0) return;
-    const auto before = static_cast<Eigen::Index>(unknowns.size()), more = static_cast<Eigen::Index>(load.rim.size());
-    unknowns.insert(unknowns.end(), load.rim.begin(), load.rim.end());
-    N.conservativeResizeLike(Eigen::MatrixXd::Zero(before + more, before + more));
-    N.bottomRightCorner(more, more) = pressure_skew(model, load, factor, iterate.solids[number].x);
-  });
-  if (unknowns.empty()) return;
-  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(model.body.unknowns, N.cols());
-  for (std::size_t i = 0; i < unknowns.size(); ++i) P(unknowns[i], static_cast<Eigen::Index>(i)) = 1.0;
-  free.Y = memory.factor.half_solve(P);
-  const Eigen::MatrixXd C = free.Y.transpose() * memory.factor.signs().asDiagonal() * free.Y;
-  // N (1 + C N)^-1 = (1 + N C)^-1 N
-  free.Z = (Eigen::MatrixXd::Identity(N.rows(), N.cols()) + N * C).partialPivLu().solve(N);
-  const Eigen::MatrixXd HY = memory.factor.border_times(free.Y);
-  free.W -= HY * free.Z * HY.transpose();
-}
-
-/// V y.
-Eigen::VectorXd with_rim(const linalg::SparseFactor& factor, const FreeMotion& free, const Eigen::VectorXd& y) {
-  if (free.Y.size() == 0) return y;
-  return y - free.Y * (free.Z * (free.Y.transpose() * factor.signs().cwiseProduct(y)));
-}
-
 }  // namespace
 
-SolidForces solid_forces(const StepContext& context, const State& iterate, int number) {
+void solid_forces(const StepContext& context, const State& iterate, int number, SolidForces& forces) {
   const solid::Body& body = context.model.solids[number].body;
-  SolidForces forces;
-  Eigen::Matrix3Xd r =
-      solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, &forces.scale);
+  solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, forces.nodal);
+  forces.scale = forces.nodal.scale;
+  Eigen::Matrix3Xd& r = forces.nodal.sum;
   const SolidModel& model = context.model.solids[number];
   const Eigen::Matrix3Xd& x = iterate.solids[number].x;
   const auto count = [&forces](const Eigen::Matrix3Xd& acting) {
@@ -93,24 +51,23 @@ SolidForces solid_forces(const StepContext& context, const State& iterate, int n
     for (std::size_t c = 0; c < nodes.size(); ++c)
       r.col(nodes[c]) -= row.where.weights[static_cast<Eigen::Index>(c)] * iterate.lambda.segment<3>(row.row);  // H^T
   }
-  forces.r = solid::at_unknowns(body, r);
+  solid::at_unknowns(body, r, forces.r);
   forces.reaction.resize(model.held());
   Eigen::Index held = 0;
   for (Eigen::Index i = 0; i < r.size(); ++i) {
     if (body.unknown(i) < 0) forces.reaction[held++] = std::exchange(r(i), 0.0);
   }
   forces.largest = r.colwise().norm().maxCoeff();
-  return forces;
 }
 
-FreeMotion free_motion(const StepContext& context, Workspace& workspace, const State& iterate, int number,
-                       solid::Tangent kind, StageTimes& times) {
+bool FreeMotion::factor(const StepContext& context, const State& iterate, int number, solid::Tangent kind,
+                        StageTimes& times, solve::VolumePart& volume) {
   const SolidModel& model = context.model.solids[number];
-  Workspace::Solid& memory = workspace.solids[number];
+  if (!factor_) factor_.emplace(model.fronts);
   {
     const Clock clock(times.assembly);
-    memory.factor.clear();
-    double* values = memory.factor.values();
+    factor_->clear();
+    double* values = factor_->values();
     for (std::size_t k = 0; k < model.rows.size(); ++k) {
       if (!is_on(iterate, context.model.solid_rows[model.rows[k]])) continue;
       const int* first = model.border.outerIndexPtr() + 3 * k;
@@ -123,41 +80,72 @@ FreeMotion free_motion(const StepContext& context, Workspace& workspace, const S
       });
     }
   }
-  FreeMotion free;
   {
     const Clock clock(times.factor);
-    free.ok = memory.factor.factor();
+    if (!factor_->factor()) return false;
   }
-  if (!free.ok) return free;
-  free.negative = memory.factor.negative();
-
   const Clock clock(times.compliance);
-  free.stiffness = memory.factor.largest_diagonal();
-  free.W = memory.factor.compliance();
-  if (kind == solid::Tangent::exact) add_rim(context, memory, iterate, number, free);
-  free.ok = free.Z.allFinite();
-  return free;
+  volume.at.clear();
+  for (const int row : model.rows) {
+    for (int i = 0; i < 3; ++i) volume.at.push_back(context.model.solid_rows[row].row + i);
+  }
+  factor_->compliance(volume.W);
+  volume.symmetric = true;
+  Y_.resize(0, 0);
+  Z_.resize(0, 0);
+  if (kind == solid::Tangent::exact) add_rim(context, iterate, number, volume);
+  return Z_.allFinite();
 }
 
-Eigen::VectorXd half_solved(const Workspace& workspace, int number, const Eigen::VectorXd& b) {
-  return workspace.solids[number].factor.half_solve(b);
-}
-
-Eigen::VectorXd border_motion(const Workspace& workspace, const FreeMotion& free, int number,
-                              const Eigen::VectorXd& y) {
-  const linalg::SparseFactor& factor = workspace.solids[number].factor;
-  return factor.border_times(with_rim(factor, free, y));
-}
-
-Eigen::Matrix3Xd corrected_motion(const StepContext& context, const Workspace& workspace, const FreeMotion& free,
-                                  Eigen::VectorXd y, int number, const Eigen::VectorXd& dlambda) {
+/// The antisymmetric part of the pressures' tangents.
+void FreeMotion::add_rim(const StepContext& context, const State& iterate, int number, solve::VolumePart& volume) {
   const SolidModel& model = context.model.solids[number];
-  const linalg::SparseFactor& factor = workspace.solids[number].factor;
-  Eigen::VectorXd own(model.border.rows());
+  std::vector<int> unknowns;
+  Eigen::MatrixXd N;
+  each_load(context, number, [&](const SolidLoadModel& load, double factor) {
+    if (load.conservative() || factor == 0.0) return;
+    const auto before = static_cast<Eigen::Index>(unknowns.size()), more = static_cast<Eigen::Index>(load.rim.size());
+    unknowns.insert(unknowns.end(), load.rim.begin(), load.rim.end());
+    N.conservativeResizeLike(Eigen::MatrixXd::Zero(before + more, before + more));
+    N.bottomRightCorner(more, more) = pressure_skew(model, load, factor, iterate.solids[number].x);
+  });
+  if (unknowns.empty()) return;
+  Y_.resize(model.body.unknowns, N.cols());
+  Eigen::MatrixXd HY(factor_->borders(), N.cols());
+  for (Eigen::Index i = 0; i < N.cols(); ++i) {
+    factor_->half_solve(Eigen::VectorXd::Unit(model.body.unknowns, unknowns[static_cast<std::size_t>(i)]), Y_.col(i));
+    factor_->border_times(Y_.col(i), HY.col(i));
+  }
+  const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
+  // N (1 + C N)^-1 = (1 + N C)^-1 N
+  Z_ = (Eigen::MatrixXd::Identity(N.rows(), N.cols()) + N * C).partialPivLu().solve(N);
+  volume.W -= HY * Z_ * HY.transpose();
+  volume.symmetric = false;
+}
+
+const Eigen::VectorXd& FreeMotion::with_rim(const Eigen::VectorXd& y) {
+  if (Y_.size() == 0) return y;
+  turned_ = y - Y_ * (Z_ * (Y_.transpose() * factor_->signs().cwiseProduct(y)));
+  return turned_;
+}
+
+void FreeMotion::push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c) {
+  y_.resize(model.body.unknowns);
+  rows_.resize(factor_->borders());
+  factor_->half_solve(force, y_);
+  factor_->border_times(with_rim(y_), rows_);
   for (std::size_t k = 0; k < model.rows.size(); ++k)
-    own.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(context.model.solid_rows[model.rows[k]].row);
-  y += factor.border_transposed_times(own);
-  return solid::from_unknowns(model.body, factor.back_solve(with_rim(factor, free, y)));
+    c.segment<3>(whole.solid_rows[model.rows[k]].row) += rows_.segment<3>(static_cast<Eigen::Index>(3 * k));
+}
+
+void FreeMotion::correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
+                         Eigen::Matrix3Xd& dx) {
+  for (std::size_t k = 0; k < model.rows.size(); ++k)
+    rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
+  factor_->add_border_transposed(rows_, y_);
+  x_.resize(model.body.unknowns);
+  factor_->back_solve(with_rim(y_), x_);
+  solid::from_unknowns(model.body, x_, dx);
 }
 
 }  // namespace sinew

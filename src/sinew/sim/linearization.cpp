@@ -8,18 +8,24 @@
 
 namespace sinew {
 
-Linearization::Linearization(const StepContext& context, Workspace& workspace, const State& iterate, StageTimes& times)
-    : context_(context), workspace_(workspace), iterate_(iterate), times_(times) {
+void Linearization::evaluate(const StepContext& context, const State& iterate, StageTimes& times) {
+  context_ = &context;
+  iterate_ = &iterate;
+  times_ = &times;
+  largest_ = scale_ = stiffness_ = 0.0;
+  rotated_ = coupled_ = false;
+  negative_ = 0;
   {
     const Clock clock(times.forces);
-    for (std::size_t i = 0; i < context.model.solids.size(); ++i) {
-      forces_.push_back(solid_forces(context, iterate, static_cast<int>(i)));
-      largest_ = std::max(largest_, forces_.back().largest);
-      scale_ = std::max(scale_, forces_.back().scale);
+    forces_.resize(context.model.solids.size());
+    for (std::size_t i = 0; i < forces_.size(); ++i) {
+      solid_forces(context, iterate, static_cast<int>(i), forces_[i]);
+      largest_ = std::max(largest_, forces_[i].largest);
+      scale_ = std::max(scale_, forces_[i].scale);
     }
   }
   const Clock clock(times.rods);
-  reduced_ = linearize(context, iterate);
+  linearize(context, iterate, reduced_);
   largest_ = std::max(largest_, reduced_.largest);
   scale_ = std::max(scale_, reduced_.scale);
 }
@@ -35,45 +41,44 @@ bool Linearization::finite() const {
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
   if (!factor_solids(kind, failed)) return false;
-  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) {
-    couple();
-    return true;
-  }
-  const Eigen::MatrixXd W = reduced_.problem.W;  // without the volumes, whose share may have to change
   couple();
-  if (conservative() && negative_ + coupled_->negative() <= context_.model.rows) return true;
+  if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) return true;
+  if (conservative() && negative_ + factor_.negative() <= context_->model.rows) return true;
   rotated_ = true;
   if (!factor_solids(solid::Tangent::definite, failed)) return false;
-  reduced_.problem.W = W;
   couple();
   return true;
 }
 
 bool Linearization::factor_solids(solid::Tangent kind, std::string& failed) {
-  free_.clear();
+  const std::vector<SolidModel>& solids = context_->model.solids;
+  free_.resize(solids.size());
+  reduced_.problem.volumes.resize(solids.size());
   negative_ = 0;
-  for (std::size_t i = 0; i < context_.model.solids.size(); ++i) {
-    const auto number = static_cast<int>(i);
-    FreeMotion own = free_motion(context_, workspace_, iterate_, number, kind, times_);
-    if (!own.ok && kind == solid::Tangent::exact) {
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    FreeMotion& own = free_[i];
+    const auto factored = [&](solid::Tangent wanted) {
+      return own.factor(*context_, *iterate_, static_cast<int>(i), wanted, *times_, reduced_.problem.volumes[i]);
+    };
+    bool ok = factored(kind);
+    if (!ok && kind == solid::Tangent::exact) {
       rotated_ = true;
-      own = free_motion(context_, workspace_, iterate_, number, solid::Tangent::definite, times_);
+      ok = factored(solid::Tangent::definite);
     }
-    if (!own.ok) {
-      failed = "solids." + context_.model.solids[i].name;
+    if (!ok) {
+      failed = "solids." + solids[i].name;
       return false;
     }
-    stiffness_ = std::max(stiffness_, own.stiffness);
-    negative_ += own.negative;
-    free_.push_back(std::move(own));
+    stiffness_ = std::max(stiffness_, own.stiffness());
+    negative_ += own.negative();
   }
   return true;
 }
 
 void Linearization::couple() {
-  const Clock clock(times_.solve);
-  add_compliance(context_, free_, reduced_.problem);
-  coupled_.emplace(reduced_.problem);
+  const Clock clock(times_->solve);
+  factor_.factor(reduced_.problem);
+  coupled_ = true;
 }
 
 void Linearization::stiffen() {
@@ -81,15 +86,15 @@ void Linearization::stiffen() {
   for (solve::ChainPart& chain : reduced_.problem.chains) {
     for (int k = 0; k < chain.chain.links(); ++k) chain.chain.block(k).diagonal() *= 1.0 + kPart;
   }
-  coupled_.emplace(reduced_.problem);
+  couple();
 }
 
 bool Linearization::conservative() const {
-  const auto& loads = context_.model.loads;
+  const auto& loads = context_->model.loads;
   const auto& chains = reduced_.problem.chains;
   return std::all_of(chains.begin(), chains.end(),
                      [](const solve::ChainPart& part) { return part.chain.symmetric(); }) &&
-         std::equal(loads.begin(), loads.end(), context_.command.loads.begin(),
+         std::equal(loads.begin(), loads.end(), context_->command.loads.begin(),
                     [](const LoadModel& load, double factor) {
                       const SolidLoadModel* own = std::get_if<SolidLoadModel>(&load.on);
                       return !own || own->conservative() || factor == 0.0;
@@ -97,31 +102,25 @@ bool Linearization::conservative() const {
 }
 
 bool Linearization::unstable() const {
-  return !rotated_ && coupled_ && conservative() && negative_ + coupled_->negative() > context_.model.rows;
+  return !rotated_ && coupled_ && conservative() && negative_ + factor_.negative() > context_->model.rows;
 }
 
-Increment Linearization::solve(const Linearization& right) {
-  std::vector<Eigen::VectorXd> forces;
-  for (const SolidForces& own : right.forces_) forces.emplace_back(-own.r);
-  return respond(forces, solve::right_side(right.reduced_.problem));
+void Linearization::solve(const Linearization& right, Increment& increment) {
+  pushes_.resize(right.forces_.size());
+  for (std::size_t i = 0; i < pushes_.size(); ++i) pushes_[i] = -right.forces_[i].r;
+  solve::right_side(right.reduced_.problem, side_);
+  respond(pushes_, side_, increment);
 }
 
-Increment Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide side) {
-  const Clock clock(times_.solve);
-  std::vector<Eigen::VectorXd> y;
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    const auto number = static_cast<int>(i);
-    y.push_back(half_solved(workspace_, number, solids[i]));
-    add_free_motion(context_, context_.model.solids[i].rows, border_motion(workspace_, free_[i], number, y.back()),
-                    side.c);
-  }
-  Increment increment;
-  increment.reduced = coupled_->solve(side);
-  if (!increment.reduced.ok) return increment;
+void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment) {
+  const Clock clock(times_->solve);
+  const Model& model = context_->model;
+  for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
+  factor_.solve(side, increment.reduced);
+  increment.dx.resize(free_.size());
+  if (!increment.reduced.ok) return;
   for (std::size_t i = 0; i < free_.size(); ++i)
-    increment.dx.push_back(
-        corrected_motion(context_, workspace_, free_[i], y[i], static_cast<int>(i), increment.reduced.dlambda));
-  return increment;
+    free_[i].correct(model.solids[i], model, increment.reduced.dlambda, increment.dx[i]);
 }
 
 void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate) {

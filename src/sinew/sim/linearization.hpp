@@ -2,9 +2,9 @@
 // statics iterate with it.
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/reduced.hpp"
 
 namespace sinew {
@@ -15,10 +15,11 @@ struct Increment {
   solve::CoupledSolution reduced;
 };
 
+/// Keeps its memory from one iterate to the next.
 class Linearization {
  public:
-  /// Evaluates forces and rows at an iterate. Context, workspace and iterate must outlive it.
-  Linearization(const StepContext& context, Workspace& workspace, const State& iterate, StageTimes& times);
+  /// Evaluates forces and rows at an iterate. Context, iterate and times must outlive what is done here.
+  void evaluate(const StepContext& context, const State& iterate, StageTimes& times);
 
   double largest() const { return largest_; }  ///< [N] largest unbalanced force
   double scale() const { return scale_; }      ///< [N] largest force that acts anywhere
@@ -45,26 +46,27 @@ class Linearization {
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
 
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
-  Increment solve() { return solve(*this); }
-  Increment solve(const Linearization& right);
+  void solve(Increment& increment) { solve(*this, increment); }
+  void solve(const Linearization& right, Increment& increment);
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
-  Increment respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide side);
+  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
 
  private:
   bool factor_solids(solid::Tangent kind, std::string& failed);
   void couple();
 
-  const StepContext& context_;
-  Workspace& workspace_;
-  const State& iterate_;
-  StageTimes& times_;
+  const StepContext* context_ = nullptr;
+  const State* iterate_ = nullptr;
+  StageTimes* times_ = nullptr;
   std::vector<SolidForces> forces_;
   Reduced reduced_;
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
-  bool rotated_ = false;
+  bool rotated_ = false, coupled_ = false;
   int negative_ = 0;  ///< eigenvalues of the volumes' tangents
   std::vector<FreeMotion> free_;
-  std::optional<solve::CoupledFactor> coupled_;
+  solve::CoupledFactor factor_;
+  std::vector<Eigen::VectorXd> pushes_;
+  solve::RightSide side_;
 };
 
 /// Moves an iterate by `fraction` of an increment.

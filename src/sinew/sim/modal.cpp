@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sinew/rod/dynamics.hpp"
+#include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/statics.hpp"
 
@@ -83,13 +84,17 @@ class Stiffness {
     side.c = Eigen::VectorXd::Zero(model.rows);
     for (std::size_t i = 0; i < model.rods.size(); ++i)
       side.chains.emplace_back(-f.segment(at_->strains[i], model.rods[i].rod.strain_coordinates()));
-    const Increment answer = factored_->respond(solids, std::move(side));
+    Increment answer;
+    factored_->respond(solids, side, answer);
     if (!answer.reduced.ok) {
       u.setConstant(NAN);
       return;
     }
-    for (std::size_t i = 0; i < model.solids.size(); ++i)
-      u.segment(at_->solids[i], model.solids[i].body.unknowns) = solid::at_unknowns(model.solids[i].body, answer.dx[i]);
+    Eigen::VectorXd own;
+    for (std::size_t i = 0; i < model.solids.size(); ++i) {
+      solid::at_unknowns(model.solids[i].body, answer.dx[i], own);
+      u.segment(at_->solids[i], own.size()) = own;
+    }
     u.segment(at_->border, model.unknowns) = answer.reduced.dz;
     for (std::size_t i = 0; i < model.rods.size(); ++i)
       u.segment(at_->strains[i], model.rods[i].rod.strain_coordinates()) = answer.reduced.dq[i];
@@ -112,8 +117,11 @@ class Mass {
     Eigen::Map<Eigen::VectorXd> f(out, at_->size);
     for (std::size_t i = 0; i < at_->model.solids.size(); ++i) {
       const solid::Body& body = at_->model.solids[i].body;
-      const Eigen::Matrix3Xd v = solid::from_unknowns(body, u.segment(at_->solids[i], body.unknowns));
-      f.segment(at_->solids[i], body.unknowns) = solid::at_unknowns(body, v * body.mass);
+      Eigen::Matrix3Xd v;
+      Eigen::VectorXd own;
+      solid::from_unknowns(body, u.segment(at_->solids[i], body.unknowns), v);
+      solid::at_unknowns(body, v * body.mass, own);
+      f.segment(at_->solids[i], body.unknowns) = own;
     }
     f.tail(rods_.rows()) = rods_ * u.tail(rods_.rows());
   }
@@ -127,7 +135,7 @@ Increment shape_of(const Coordinates& at, const Eigen::VectorXd& v) {
   Increment shape;
   for (std::size_t i = 0; i < at.model.solids.size(); ++i) {
     const solid::Body& body = at.model.solids[i].body;
-    shape.dx.push_back(solid::from_unknowns(body, v.segment(at.solids[i], body.unknowns)));
+    solid::from_unknowns(body, v.segment(at.solids[i], body.unknowns), shape.dx.emplace_back());
   }
   shape.reduced.dz = v.segment(at.border, at.model.unknowns);
   shape.reduced.dlambda = Eigen::VectorXd::Zero(at.model.rows);
@@ -227,7 +235,8 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
                                        std::string& failed) {
   StageTimes times;
   const StepContext context = make_context(model, equilibrium, command_at(model, 0.0), 0.0);
-  Linearization here(context, workspace, equilibrium, times);
+  Linearization& here = workspace.memory().here;
+  here.evaluate(context, equilibrium, times);
   if (!here.conservative()) {
     failed =
         "follower forces, moments, and pressure on a surface with a free rim have no potential: modes about them need "
@@ -252,8 +261,9 @@ Modes find_modes(const Model& model, Workspace& workspace) {
 }  // namespace
 
 StepResult modal_step(const Model& model, Workspace& workspace, const State& state) {
-  if (!workspace.modes) workspace.modes = std::make_shared<const Modes>(find_modes(model, workspace));
-  const auto& [found, modes] = *workspace.modes;
+  std::shared_ptr<const Modes>& kept = workspace.memory().modes;
+  if (!kept) kept = std::make_shared<const Modes>(find_modes(model, workspace));
+  const auto& [found, modes] = *kept;
   StepReport report = found.report;
   if (!accepted(report.status)) return {state, report};
   const auto number = static_cast<std::size_t>(state.grid);

@@ -2,48 +2,12 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <memory>
-#include <optional>
 
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
 
 namespace {
-
-/// Halves the last increment while it leads where a law ends (an element turned inside out), and that of a static
-/// equilibrium while the unbalanced force grows. Motion of rows is not judged: a motor that has moved must load the
-/// rods before anything can be balanced.
-class LineSearch {
- public:
-  void take(const State& from, const Increment& increment, double fraction, const Linearization& there) {
-    from_ = from;
-    increment_ = increment;
-    fraction_ = fraction;
-    force_ = there.largest();
-    judged_ = there.violation();
-    halvings_ = 0;
-  }
-  bool too_far(const StepContext& context, const Linearization& here) const {
-    constexpr int kMostHalvings = 4, kMostRescues = 12;
-    if (from_ && !here.finite()) return halvings_ < kMostRescues;
-    return context.rate == 0.0 && from_ && judged_ <= 1e-6 * context.model.size && halvings_ < kMostHalvings &&
-           !(here.largest() <= force_) && here.largest() > 1e-6 * here.scale();
-  }
-  State shortened(const StepContext& context) {
-    State state = *from_;
-    fraction_ *= 0.5;
-    ++halvings_;
-    advance_by(context, increment_, fraction_, state);
-    return state;
-  }
-
- private:
-  std::optional<State> from_;
-  Increment increment_;
-  double fraction_ = 1.0, force_ = 0.0, judged_ = 0.0;
-  int halvings_ = 0;
-};
 
 /// a <- (a - b) factor.
 void scale_difference(Increment& a, const Increment& b, double factor) {
@@ -71,6 +35,30 @@ void judge(const StepContext& context, bool fixed, const State& state, StepRepor
 }
 
 }  // namespace
+
+void LineSearch::take(const State& from, const Increment& increment, double fraction, const Linearization& there) {
+  taken_ = true;
+  from_ = from;
+  increment_ = increment;
+  fraction_ = fraction;
+  force_ = there.largest();
+  judged_ = there.violation();
+  halvings_ = 0;
+}
+
+bool LineSearch::too_far(const StepContext& context, const Linearization& here) const {
+  constexpr int kMostHalvings = 4, kMostRescues = 12;
+  if (taken_ && !here.finite()) return halvings_ < kMostRescues;
+  return context.rate == 0.0 && taken_ && judged_ <= 1e-6 * context.model.size && halvings_ < kMostHalvings &&
+         !(here.largest() <= force_) && here.largest() > 1e-6 * here.scale();
+}
+
+void LineSearch::shorten(const StepContext& context, State& iterate) {
+  iterate = from_;
+  fraction_ *= 0.5;
+  ++halvings_;
+  advance_by(context, increment_, fraction_, iterate);
+}
 
 Eigen::VectorXd measured(const Model& model, const Increment& increment) {
   Eigen::Index size = increment.reduced.dz.size();
@@ -101,83 +89,88 @@ Eigen::VectorXd measured(const Model& model, const Increment& increment) {
 }
 
 // By a difference in t, exact where all loads are linear in it.
-Increment change_along(const ContextAt& at, Workspace& workspace, const Iterate& iterate, Linearization& here,
-                       const Increment& own, StageTimes& times) {
+void change_along(const ContextAt& at, Memory& memory, const Iterate& iterate, StageTimes& times) {
   const double e = 1e-6;
-  const StepContext ahead = at(iterate.t + e);
+  at(iterate.t + e, memory.ahead);
   State carried = iterate.state;
-  place_held(ahead, carried);
-  const Linearization there(ahead, workspace, carried, times);
-  Increment change = here.solve(there);
-  if (!own.reduced.ok) change.reduced.ok = false;
-  if (change.reduced.ok) scale_difference(change, own, 1.0 / e);
-  return change;
+  place_held(memory.ahead, carried);
+  memory.there.evaluate(memory.ahead, carried, times);
+  memory.here.solve(memory.there, memory.change);
+  if (!memory.increment.reduced.ok) memory.change.reduced.ok = false;
+  if (memory.change.reduced.ok) scale_difference(memory.change, memory.increment, 1.0 / e);
 }
 
-StepReport newton(const ContextAt& at, Workspace& workspace, const NewtonRules& rules, Iterate& iterate) {
+StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules, Iterate& iterate) {
   const bool descent = rules.wanted == Linearization::Wanted::descent && !rules.fixed;
   StepReport report;
-  LineSearch search;
-  std::optional<StepContext> context;
+  StepContext& context = memory.context;
+  Linearization& here = memory.here;
+  Increment& increment = memory.increment;
   double stiffness = 0.0;
   const auto fail = [&report](Status status, std::string detail) {
     report.status = status;
     report.detail = std::move(detail);
     return report;
   };
+  const auto complete = [&] {
+    finish(context, iterate.state, memory.room);
+    judge(context, rules.fixed, iterate.state, report);
+    return report;
+  };
+  memory.search.begin();
   for (;; ++report.newton) {
-    if (!context || rules.across) {
-      context.emplace(at(iterate.t));
-      place_held(*context, iterate.state);
-      stiffness = std::max(stiffness, inertia_of(*context));
+    if (report.newton == 0 || rules.across) {
+      at(iterate.t, context);
+      place_held(context, iterate.state);
+      stiffness = std::max(stiffness, inertia_of(context));
     }
-    context->first_guess = report.newton == 0 && context->rate > 0.0 && !rules.fixed;
-    auto evaluated = std::make_unique<Linearization>(*context, workspace, iterate.state, report.times);
-    while (search.too_far(*context, *evaluated)) {
-      iterate.state = search.shortened(*context);
-      evaluated = std::make_unique<Linearization>(*context, workspace, iterate.state, report.times);
+    if (rules.fixed && report.newton == rules.limit && rules.evaluation == Evaluation::motion) return complete();
+    context.first_guess = report.newton == 0 && context.rate > 0.0 && !rules.fixed;
+    here.evaluate(context, iterate.state, report.times);
+    while (memory.search.too_far(context, here)) {
+      memory.search.shorten(context, iterate.state);
+      here.evaluate(context, iterate.state, report.times);
     }
-    Linearization& here = *evaluated;
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
     report.violation = here.violation();
     if (!here.finite() || !std::isfinite(iterate.t)) {
-      const std::string where = broken_cell(context->model, iterate.state);
+      const std::string where = broken_cell(context.model, iterate.state);
       return where.empty() ? fail(Status::diverged, "forces are not finite") : fail(Status::inverted, where);
     }
-    if (rules.fixed ? report.newton == rules.limit : report.newton > 0 && balanced(context->model, here, stiffness)) {
-      finish(*context, here, iterate.state);
-      judge(*context, rules.fixed, iterate.state, report);
-      return report;
+    if (rules.fixed ? report.newton == rules.limit : report.newton > 0 && balanced(context.model, here, stiffness)) {
+      write_forces(here, iterate.state);
+      return complete();
     }
     if (!rules.fixed && report.newton == rules.limit) return fail(Status::max_iterations, "");
     std::string failed;
     if (!here.factor(rules.fixed ? solid::Tangent::definite : solid::Tangent::exact, rules.wanted, failed))
       return fail(Status::singular, failed);
     report.rotated |= here.rotated();
-    if (context->rate == 0.0) report.unstable = here.unstable();
+    if (context.rate == 0.0) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
-    Increment increment = here.solve();
+    here.solve(increment);
     if (!increment.reduced.ok && !descent && !rules.fixed) {
       here.stiffen();
-      increment = here.solve();
+      here.solve(increment);
     }
     report.redundant |= increment.reduced.redundant;
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
     if (rules.across) {
-      const Increment change = change_along(at, workspace, iterate, here, increment, report.times);
+      change_along(at, memory, iterate, report.times);
+      const Increment& change = memory.change;
       if (!change.reduced.ok) return fail(Status::singular, "constraint rows and rods");
       const Eigen::VectorXd& n = rules.across->direction;
-      const Model& model = context->model;
+      const Model& model = context.model;
       const double dt = -n.dot(measured(model, increment)) / (n.dot(measured(model, change)) + rules.across->rate);
       if (!std::isfinite(dt)) return fail(Status::singular, "the path has no direction");
-      advance_by(*context, change, dt, iterate.state);
-      advance_by(*context, increment, 1.0, iterate.state);
+      advance_by(context, change, dt, iterate.state);
+      advance_by(context, increment, 1.0, iterate.state);
       iterate.t += dt;
       continue;
     }
-    const double fraction = rules.fixed ? 1.0 : trusted_fraction(*context, increment);
-    if (descent) search.take(iterate.state, increment, fraction, here);
-    advance_by(*context, increment, fraction, iterate.state);
+    const double fraction = rules.fixed ? 1.0 : trusted_fraction(context, increment);
+    if (descent) memory.search.take(iterate.state, increment, fraction, here);
+    advance_by(context, increment, fraction, iterate.state);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "sinew/sim/linearization.hpp"
 
@@ -26,20 +27,53 @@ struct NewtonRules {
   /// Which equilibrium is looked for: the nearest minimum, by steps that are shortened where they lead away from it, or
   /// any at all, by steps that are only limited to what a linearisation can be trusted for.
   Linearization::Wanted wanted = Linearization::Wanted::descent;
-  const AcrossPath* across = nullptr;  ///< t is looked for, too
+  const AcrossPath* across = nullptr;        ///< t is looked for, too
+  Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
 };
 
-/// What is prescribed at t.
-using ContextAt = std::function<StepContext(double t)>;
+/// Says what is prescribed at t.
+using ContextAt = std::function<void(double t, StepContext& context)>;
+
+/// Halves the last increment while it leads where a law ends (an element turned inside out), and that of a static
+/// equilibrium while the unbalanced force grows. Motion of rows is not judged: a motor that has moved must load the
+/// rods before anything can be balanced.
+class LineSearch {
+ public:
+  void begin() { taken_ = false; }
+  void take(const State& from, const Increment& increment, double fraction, const Linearization& there);
+  bool too_far(const StepContext& context, const Linearization& here) const;
+  void shorten(const StepContext& context, State& iterate);
+
+ private:
+  bool taken_ = false;
+  State from_;
+  Increment increment_;
+  double fraction_ = 1.0, force_ = 0.0, judged_ = 0.0;
+  int halvings_ = 0;
+};
+
+struct Modes;
+
+/// What a Workspace keeps.
+struct Memory {
+  explicit Memory(const Model& model) : context(model), ahead(model) {}
+  StepContext context, ahead;
+  Linearization here, there;
+  Increment increment, change;
+  LineSearch search;
+  Iterate iterate;
+  Command command;
+  rod::Configuration room;
+  std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
+};
 
 /// Iterates until forces and rows are balanced and completes the state (`finish`). On failure the report names it and
 /// the iterate is where it ended.
-StepReport newton(const ContextAt& at, Workspace& workspace, const NewtonRules& rules, Iterate& iterate);
+StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules, Iterate& iterate);
 
-/// What changes of an equilibrium as t grows: the tangent K u' = -dr/dt of the path. `own` is the increment `here`
-/// gives.
-Increment change_along(const ContextAt& at, Workspace& workspace, const Iterate& iterate, Linearization& here,
-                       const Increment& own, StageTimes& times);
+/// What changes of an equilibrium as t grows: the tangent K u' = -dr/dt of the path, into Memory::change. Memory::here
+/// stands there and is factored, and `increment` is what it gives.
+void change_along(const ContextAt& at, Memory& memory, const Iterate& iterate, StageTimes& times);
 
 /// An increment as one vector: what each number turns [rad], or moves in units of the scene's size.
 Eigen::VectorXd measured(const Model& model, const Increment& increment);

@@ -18,8 +18,8 @@ void add_points(RodRows& rod) {
     const PointModel& point = rod.context().model.points[k];
     if (point.line.rod != rod.number()) continue;
     if (!iterate.points[k].on) {  // beyond the tip: lambda = 0, and the abscissa stays
-      if (point.unknown >= 0) problem.B(point.unknown, point.unknown) = 1.0;
-      problem.W.block<3, 3>(point.row, point.row) = Eigen::Matrix3d::Identity();
+      if (point.unknown >= 0) problem.B.add(point.unknown, point.unknown, 1.0);
+      for (int i = 0; i < 3; ++i) problem.W.add(point.row + i, point.row + i, 1.0);
       continue;
     }
     const double s = iterate.points[k].s;
@@ -38,7 +38,7 @@ void add_points(RodRows& rod) {
     rod.slide(s, lambda, point.unknown);
     const Vec3 t = on_curve.derivative.normalized();
     reduced.violation = std::max(reduced.violation, (gap - t.dot(gap) * t).norm());
-    problem.G.block<3, 1>(point.row, point.unknown) = on_curve.derivative;
+    problem.G.add(point.row, point.unknown, on_curve.derivative);
     problem.r[point.unknown] = lambda.dot(on_curve.derivative);
     reduced.largest = std::max(reduced.largest, std::abs(problem.r[point.unknown]));
   }
@@ -52,9 +52,9 @@ void add_cable(const StepContext& context, const State& iterate, int number, Red
   const rod::CableLength length = rod::cable_length(model.cable, context.cable_bases[number], z);
   const double tension = iterate.lambda[model.length_row];
   const int n = model.cable.coordinates();
-  problem.B.block(model.unknown, model.unknown, n, n) = tension * length.hessian;
+  problem.B.add(model.unknown, model.unknown, tension * length.hessian);
   problem.r.segment(model.unknown, n) = tension * length.gradient;
-  problem.G.block(model.length_row, model.unknown, 1, n) = length.gradient.transpose();
+  problem.G.add(model.length_row, model.unknown, length.gradient.transpose());
   problem.c[model.length_row] = model.cable.length - length.value;
   reduced.scale = std::max(reduced.scale, std::abs(tension));
   reduced.violation = std::max(reduced.violation, std::abs(model.cable.length - length.value));
@@ -63,7 +63,7 @@ void add_cable(const StepContext& context, const State& iterate, int number, Red
     const int at = 1 + 3 * point.cable_point;
     const Vec3 gap = solid_point(context.model, iterate, point.solid, point.where) - z.segment<3>(at);
     problem.c.segment<3>(point.row) = gap;
-    problem.G.block<3, 3>(point.row, model.unknown + at) = Eigen::Matrix3d::Identity();
+    for (int i = 0; i < 3; ++i) problem.G.add(point.row + i, model.unknown + at + i, 1.0);
     problem.r.segment<3>(model.unknown + at) += iterate.lambda.segment<3>(point.row);
     reduced.violation = std::max(reduced.violation, gap.norm());
   }
@@ -81,7 +81,7 @@ void add_actuator(const StepContext& context, const State& iterate, std::size_t 
   reduced.scale = std::max(reduced.scale, std::abs(force) / arm);
   if (actuator.row < 0) return;
   const double off = motor_position(context.model, iterate, actuator) - target;
-  problem.G(actuator.row, actuator.unknown) = -1.0;
+  problem.G.add(actuator.row, actuator.unknown, -1.0);
   problem.c[actuator.row] = off;
   reduced.violation = std::max(reduced.violation, std::abs(off) * arm);
 }
@@ -94,7 +94,7 @@ void add_followed(const StepContext& context, const State& iterate, Reduced& red
     const Vec3 gap = solid_point(context.model, iterate, row.solid, row.where) -
                      iterate.followed.segment<3>(row.unknown - context.model.first_followed);
     problem.c.segment<3>(row.row) = gap;
-    problem.G.block<3, 3>(row.row, row.unknown) = Eigen::Matrix3d::Identity();
+    for (int i = 0; i < 3; ++i) problem.G.add(row.row + i, row.unknown + i, 1.0);
     problem.r.segment<3>(row.unknown) += iterate.lambda.segment<3>(row.row);
     reduced.violation = std::max(reduced.violation, gap.norm());
   }
@@ -102,14 +102,17 @@ void add_followed(const StepContext& context, const State& iterate, Reduced& red
 
 }  // namespace
 
-Reduced linearize(const StepContext& context, const State& iterate) {
-  Reduced reduced;
+void linearize(const StepContext& context, const State& iterate, Reduced& reduced) {
   const Model& model = context.model;
-  reduced.problem.B.setZero(model.unknowns, model.unknowns);
-  reduced.problem.G.setZero(model.rows, model.unknowns);
-  reduced.problem.W.setZero(model.rows, model.rows);
-  reduced.problem.r.setZero(model.unknowns);
-  reduced.problem.c.setZero(model.rows);
+  solve::CoupledProblem& problem = reduced.problem;
+  problem.B.clear();
+  problem.G.clear();
+  problem.W.clear();
+  problem.r.setZero(model.unknowns);
+  problem.c.setZero(model.rows);
+  problem.chains.resize(model.rods.size());
+  reduced.internal.resize(model.rods.size());
+  reduced.largest = reduced.scale = reduced.violation = 0.0;
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     RodRows rod(context, iterate, static_cast<int>(i), reduced);
     add_points(rod);
@@ -120,32 +123,14 @@ Reduced linearize(const StepContext& context, const State& iterate) {
   for (std::size_t i = 0; i < model.actuators.size(); ++i) add_actuator(context, iterate, i, reduced);
   add_followed(context, iterate, reduced);
   // Unknowns of the border are lengths, but for the turns of bases.
-  Eigen::VectorXd r = reduced.problem.r;
+  const auto count = [&](double force) { reduced.largest = std::max(reduced.largest, std::abs(force)); };
+  int next = 0;
   for (const RodModel& rod : model.rods) {
-    for (int i = 0; i < rod.rod.base_coordinates(); ++i) {
-      if (rod.rod.base[i].turns) r[rod.unknown + i] /= rod.rod.length();
-    }
+    for (; next < rod.unknown; ++next) count(problem.r[next]);
+    for (int i = 0; i < rod.rod.base_coordinates(); ++i, ++next)
+      count(problem.r[next] / (rod.rod.base[i].turns ? rod.rod.length() : 1.0));
   }
-  if (r.size() > 0) reduced.largest = std::max(reduced.largest, r.lpNorm<Eigen::Infinity>());
-  return reduced;
-}
-
-void add_compliance(const StepContext& context, const std::vector<FreeMotion>& free, solve::CoupledProblem& problem) {
-  const std::vector<SolidRow>& all = context.model.solid_rows;
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const std::vector<int>& rows = context.model.solids[i].rows;
-    for (std::size_t a = 0; a < rows.size(); ++a) {
-      for (std::size_t b = 0; b < rows.size(); ++b)
-        problem.W.block<3, 3>(all[rows[a]].row, all[rows[b]].row) +=
-            free[i].W.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-    }
-  }
-}
-
-void add_free_motion(const StepContext& context, const std::vector<int>& solid_rows, const Eigen::VectorXd& motion,
-                     Eigen::VectorXd& c) {
-  for (std::size_t a = 0; a < solid_rows.size(); ++a)
-    c.segment<3>(context.model.solid_rows[solid_rows[a]].row) += motion.segment<3>(static_cast<Eigen::Index>(3 * a));
+  for (; next < model.unknowns; ++next) count(problem.r[next]);
 }
 
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

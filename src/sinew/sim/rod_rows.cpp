@@ -142,13 +142,16 @@ void RodRows::finish() {
   rod::add_loads(shape_, loads_, equations);
   rod::add_elasticity(rod, iterate_.rods[number_].q, context_.start.rods[number_].q, context_.rate, equations);
   for (std::size_t i = 0; i < slides_.size(); ++i) {
-    problem().B(slides_[i], slides_[i]) += equations.slides[i].second;
+    problem().B.add(slides_[i], slides_[i], equations.slides[i].second);
     attachments_.emplace_back(equations.slides[i].attachment, slides_[i]);
   }
   std::stable_sort(attachments_.begin(), attachments_.end(),
                    [](const auto& a, const auto& b) { return a.first.link < b.first.link; });
 
-  solve::ChainPart part;
+  solve::ChainPart& part = problem().chains[number_];
+  part.attachments.clear();
+  part.at.clear();
+  part.whole_at.clear();
   part.base = shape_.base;
   part.first_base = model.unknown;
   part.whole.resize(rod.strain_coordinates(), 0);
@@ -161,9 +164,8 @@ void RodRows::finish() {
   part.r = equations.r.tail(rod.strain_coordinates());
   part.chain = std::move(equations.chain);
   problem().r.segment(model.unknown, nb) += equations.r.head(nb);
-  problem().B.block(model.unknown, model.unknown, nb, nb) += equations.base;
-  problem().chains.push_back(std::move(part));
-  reduced_.internal.push_back(std::move(equations.internal));
+  problem().B.add(model.unknown, model.unknown, equations.base);
+  reduced_.internal[number_] = std::move(equations.internal);
 }
 
 }  // namespace sinew

@@ -24,7 +24,7 @@ class RodRows {
   /// Couples a border entry (an unknown z, or row(i)) to the strains and the base by f . dX/dq of the point at
   /// `offset`.
   void attach(int border, const rod::CurvePoint& point, const Vec3& offset, const Vec3& f);
-  int row(int number) const { return static_cast<int>(reduced_.problem.B.rows()) + number; }
+  int row(int number) const { return static_cast<int>(reduced_.problem.r.size()) + number; }
 
   /// Adds mass, elasticity, tendons and all the above to the coupled problem.
   void finish();

@@ -3,20 +3,31 @@
 #include <cmath>
 
 #include "sinew/sim/modal.hpp"
+#include "sinew/sim/newton.hpp"
 #include "sinew/sim/statics.hpp"
 
 namespace sinew {
 
-namespace {}  // namespace
+namespace {
 
-StepResult advance(const Model& model, Workspace& workspace, const State& state) {
-  if (model.scene.analysis == Analysis::statics) return static_step(model, workspace, state);
-  if (model.scene.analysis == Analysis::modal) return modal_step(model, workspace, state);
+/// Takes what a step by value gives.
+StepReport taken(StepResult result, State& state) {
+  if (accepted(result.report.status)) state = std::move(result.next);
+  return result.report;
+}
+
+}  // namespace
+
+StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
+  if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
+  if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);
+  const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
   const double h = model.scene.time.step;
   const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
   const bool on_grid = state.time == from;
   const double whole = on_grid ? h : to - state.time;
-  StepResult result;
+  Command& command = workspace.memory().command;
+  StepReport report;
   // Half steps are fractions of the grid's, whatever is left of it after earlier ones.
   for (int halvings = 0; halvings <= kHalvings; ++halvings) {
     const double part = std::ldexp(h, -halvings);
@@ -24,17 +35,16 @@ StepResult advance(const Model& model, Workspace& workspace, const State& state)
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
-    Command command = command_at(model, to);
+    command_at(model, to, command);
     if (!lands) command = between(command_of(model, state), command, part / whole);
-    const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
-    result = equilibrium ? equilibrium_step(model, workspace, command, state, time)
-                         : step(model, workspace, command, state, lands ? whole : part);
-    if (!accepted(result.report.status)) continue;
-    result.next.time = time;
-    if (lands) ++result.next.grid;
-    return result;
+    report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
+                         : step(model, workspace, command, lands ? whole : part, state, evaluation);
+    if (!accepted(report.status)) continue;
+    state.time = time;
+    if (lands) ++state.grid;
+    return report;
   }
-  return result;
+  return report;
 }
 
 long grid_steps(const Scene& scene) {
@@ -53,13 +63,12 @@ RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* f
   Workspace workspace = make_workspace(model);
   const long steps = grid_steps(model.scene);
   while (state.grid < steps) {
-    StepResult result = advance(model, workspace, state);
-    if (!accepted(result.report.status)) {
-      if (failure) *failure = result.report;
+    const StepReport report = advance(model, workspace, state);
+    if (!accepted(report.status)) {
+      if (failure) *failure = report;
       return RunEnd::stopped;
     }
-    state = std::move(result.next);
-    if (!on_step(state, result.report)) return RunEnd::interrupted;
+    if (!on_step(state, report)) return RunEnd::interrupted;
   }
   return RunEnd::done;
 }

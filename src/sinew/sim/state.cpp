@@ -1,5 +1,6 @@
 #include "sinew/sim/state.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "sinew/rod/kinematics.hpp"
@@ -96,6 +97,12 @@ void each_number(StateType& state, const Visit& visit) {
 }
 
 }  // namespace
+
+bool finite(const State& state) {
+  bool all = true;
+  each_number(state, [&all](double value) { all &= std::isfinite(value); });
+  return all;
+}
 
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers{static_cast<double>(state.grid)};

@@ -63,6 +63,9 @@ struct State {
 
 State initial_state(const Model& model);
 
+/// All numbers are.
+bool finite(const State& state);
+
 /// The state as plain numbers in a fixed order, and back. unpack throws std::invalid_argument if the size is not this
 /// model's.
 std::vector<double> pack(const State& state);

@@ -36,11 +36,10 @@ Command nothing(const Model& model) {
 }
 
 /// Contexts along a path from a state.
-ContextAt along(const Model& model, const Ramp& ramp, const State& start) {
-  return [&model, &ramp, &start](double t) {
-    StepContext context = make_context(model, start, between(ramp.from, ramp.to, t), ramp.time(t) - start.time);
+ContextAt along(const Ramp& ramp, const State& start) {
+  return [&ramp, &start](double t, StepContext& context) {
+    context.set(start, between(ramp.from, ramp.to, t), ramp.time(t) - start.time);
     context.gravity = ramp.gravity_from + t * (ramp.gravity_to - ramp.gravity_from);
-    return context;
   };
 }
 
@@ -50,11 +49,10 @@ struct Reached {
 };
 
 /// The equilibrium at the t of a first guess.
-Reached land(const Model& model, Workspace& workspace, const Ramp& ramp, const State& state, Iterate guess,
-             const NewtonRules& rules) {
+Reached land(Memory& memory, const Ramp& ramp, const State& state, Iterate guess, const NewtonRules& rules) {
   guess.state.path = state.path;
   Reached reached{std::move(guess), {}};
-  reached.report = newton(along(model, ramp, state), workspace, rules, reached.at);
+  reached.report = newton(along(ramp, state), memory, rules, reached.at);
   return reached;
 }
 
@@ -72,10 +70,10 @@ void add_effort(const StepReport& part, StepReport& whole) {
 
 /// One step along a path; its arc and what the next one needs are in the state's `path`. On failure `at` is where it
 /// started from.
-Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, const Iterate& from) {
+Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const Iterate& from) {
   const State& state = from.state;
   if (state.path.step == 0.0) {  // before anything: the equilibrium at t = 0
-    Reached first = land(model, workspace, ramp, state, {state, 0.0}, whole_steps(model));
+    Reached first = land(memory, ramp, state, {state, 0.0}, whole_steps(model));
     first.at.state.path.step = kFirstArc;
     first.at.state.path.stable = !first.report.unstable;
     return accepted(first.report.status) ? first : Reached{from, first.report};
@@ -88,26 +86,32 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
     report.detail = text;
     return {from, report};
   }
-  const ContextAt at = along(model, ramp, state);
-  const StepContext context = at(from.t);
+  const ContextAt at = along(ramp, state);
+  StepContext& context = memory.context;
+  at(from.t, context);
 
   // Sliding points that the rod's end has passed or reached: the path jumps to where it goes on with them.
   State followed = state;
-  follow_points(context, followed);
+  follow_points(context, followed, memory.room);
   const bool changed = !std::equal(state.points.begin(), state.points.end(), followed.points.begin(),
                                    [](const PointState& a, const PointState& b) { return a.on == b.on; });
   if (changed) {
-    Reached jumped = land(model, workspace, ramp, state, {followed, from.t}, whole_steps(model));
+    Reached jumped = land(memory, ramp, state, {followed, from.t}, whole_steps(model));
     jumped.at.state.path.count = state.path.count + 1.0;
     return accepted(jumped.report.status) ? jumped : Reached{from, jumped.report};
   }
 
   // The tangent of the path here, the way the last step went.
-  Linearization here(context, workspace, state, report.times);
+  Linearization& here = memory.here;
+  here.evaluate(context, state, report.times);
   report.status = Status::singular;
   if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail))
     return {from, report};
-  const auto tangent = [&] { return change_along(at, workspace, from, here, here.solve(), report.times); };
+  const auto tangent = [&] {
+    here.solve(memory.increment);
+    change_along(at, memory, from, report.times);
+    return memory.change;
+  };
   Increment change = tangent();
   if (!change.reduced.ok) {
     here.stiffen();
@@ -130,7 +134,7 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
       rules.limit = kMostIterations;
       rules.across = &across;
     }
-    Reached next = land(model, workspace, ramp, state, std::move(guess), rules);
+    Reached next = land(memory, ramp, state, std::move(guess), rules);
     add_effort(next.report, spent);
     report = next.report;
     if (!accepted(report.status) || (state.path.stable && report.unstable && arc > kArcAtBranch)) continue;
@@ -156,7 +160,7 @@ Reached path_step(const Model& model, Workspace& workspace, const Ramp& ramp, co
 StepResult static_step(const Model& model, Workspace& workspace, const State& state) {
   const double duration = model.scene.time.duration;
   const Ramp ramp{nothing(model), command_at(model, duration), Vec3::Zero(), model.scene.gravity, 0.0, duration};
-  Reached next = path_step(model, workspace, ramp, {state, state.time / duration});
+  Reached next = path_step(model, workspace.memory(), ramp, {state, state.time / duration});
   if (!accepted(next.report.status)) return {state, next.report};
   next.at.state.time = ramp.time(next.at.t);
   if (next.at.t == 1.0) {
@@ -179,21 +183,23 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     return accepted(reached.report.status) && !reached.report.unstable &&
            count_folded(model, reached.at.state) <= folded;
   };
+  Memory& memory = workspace.memory();
   const auto guessed = [&](const State& from) {
-    const StepContext context = along(model, ramp, from)(1.0);
-    State guess = first_guess(context);
-    follow_points(context, guess);
-    return Iterate{std::move(guess), 1.0};
+    along(ramp, from)(1.0, memory.context);
+    Iterate guess;
+    first_guess(memory.context, guess.state);
+    follow_points(memory.context, guess.state, memory.room);
+    return guess;
   };
 
   NewtonRules rules = whole_steps(model);
   rules.limit = std::min(rules.limit, kMostIterations);
-  Reached end = land(model, workspace, ramp, state, guessed(state), rules);
+  Reached end = land(memory, ramp, state, guessed(state), rules);
   StepReport spent = end.report;
   if (!sound(end)) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0; ++i) {
-      Reached next = path_step(model, workspace, ramp, on);
+      Reached next = path_step(model, memory, ramp, on);
       add_effort(next.report, spent);
       const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
       if (!sound(next) || back) break;
@@ -202,7 +208,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     }
     if (on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
-      Reached minimum = land(model, workspace, ramp, on.state, guessed(on.state), rules);
+      Reached minimum = land(memory, ramp, on.state, guessed(on.state), rules);
       add_effort(minimum.report, spent);
       if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
     }

@@ -8,14 +8,22 @@
 
 namespace sinew {
 
+double told_at(const Drive& drive, double time) {
+  const Table* table = std::get_if<Table>(&drive);
+  return table ? value_at(*table, time) : 0.0;
+}
+
+void command_at(const Model& model, double time, Command& command) {
+  command.actuators.resize(model.actuators.size());
+  command.loads.resize(model.loads.size());
+  for (std::size_t i = 0; i < model.actuators.size(); ++i)
+    command.actuators[i] = told_at(model.actuators[i].drive, time);
+  for (std::size_t i = 0; i < model.loads.size(); ++i) command.loads[i] = told_at(model.loads[i].factor, time);
+}
+
 Command command_at(const Model& model, double time) {
-  const auto value = [time](const Drive& drive) {
-    const Table* table = std::get_if<Table>(&drive);
-    return table ? value_at(*table, time) : 0.0;
-  };
   Command command;
-  for (const ActuatorModel& actuator : model.actuators) command.actuators.push_back(value(actuator.drive));
-  for (const LoadModel& load : model.loads) command.loads.push_back(value(load.factor));
+  command_at(model, time, command);
   return command;
 }
 
@@ -36,21 +44,33 @@ Command between(Command from, const Command& to, double part) {
   return from;
 }
 
-Workspace make_workspace(const Model& model) {
-  Workspace workspace;
-  for (const SolidModel& solid : model.solids) workspace.solids.push_back({linalg::SparseFactor(solid.fronts)});
-  return workspace;
+Workspace::Workspace(const Model& model) : memory_(std::make_unique<Memory>(model)) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
+                Evaluation evaluation) {
+  Memory& memory = workspace.memory();
+  memory.context.set(state, command, h);
+  Iterate& iterate = memory.iterate;
+  iterate.t = 1.0;
+  first_guess(memory.context, iterate.state);
+  follow_points(memory.context, iterate.state, memory.room);
+  const Newton& wanted = model.scene.newton;
+  const bool fixed = wanted.iterations > 0;
+  NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
+  rules.evaluation = evaluation;
+  // What is prescribed stands in the context already.
+  const StepReport report = newton([](double, StepContext&) {}, memory, rules, iterate);
+  if (accepted(report.status)) std::swap(state, iterate.state);
+  return report;
 }
 
 StepResult step(const Model& model, Workspace& workspace, const Command& command, const State& state, double h) {
-  const StepContext context = make_context(model, state, command, h);
-  Iterate iterate{first_guess(context)};
-  follow_points(context, iterate.state);
-  const Newton& wanted = model.scene.newton;
-  const bool fixed = wanted.iterations > 0;
-  const NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
-  const StepReport report = newton([&context](double) { return context; }, workspace, rules, iterate);
-  return {accepted(report.status) ? std::move(iterate.state) : state, report};
+  StepResult result{state, {}};
+  result.report = step(model, workspace, command, h, result.next);
+  return result;
 }
 
 }  // namespace sinew

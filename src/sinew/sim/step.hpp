@@ -16,8 +16,11 @@ struct Command {
   std::vector<double> loads;      ///< factor of each [-]
 };
 
-/// The values of all tables at a time; what is driven from outside gets 0.
+/// The value of a table at a time; 0 where it is driven from outside.
+double told_at(const Drive& drive, double time);
+/// All of them.
 Command command_at(const Model& model, double time);
+void command_at(const Model& model, double time, Command& command);
 /// What a state obeys: the forces and factors it was told, and where its motors are.
 Command command_of(const Model& model, const State& state);
 /// The command that is a part of the way from one to another.
@@ -40,19 +43,37 @@ struct StepReport {
   StageTimes times;
 };
 
-struct Modes;
+struct Memory;
 
-/// Memory that steps of one model reuse; holds nothing between them that they would not find again. One per thread.
-struct Workspace {
-  struct Solid {
-    linalg::SparseFactor factor;
-  };
-  std::vector<Solid> solids;
-  std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
+/// Memory that steps of one model reuse, which must outlive it; holds nothing between them that they would not find
+/// again. One per thread.
+class Workspace {
+ public:
+  explicit Workspace(const Model& model);
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+  Memory& memory() { return *memory_; }
+
+ private:
+  std::unique_ptr<Memory> memory_;
 };
-Workspace make_workspace(const Model& model);
+inline Workspace make_workspace(const Model& model) { return Workspace(model); }
 
-/// Advances by h [s]. On failure `next` is the state it started from.
+/// What a step with a fixed number of linearisations (`newton: 1`) evaluates at its end.
+enum class Evaluation {
+  full,
+  /// Only what the next step needs, for controllers that need no more: reactions and internal forces stay those of the
+  /// last full step, residual and violation are those before the last linearisation. Half the forces, half the rods.
+  motion
+};
+
+/// Advances a state by h [s]. On failure it stays as it is. After the first step of a model no memory is asked for
+/// where Newton's steps need no fallback.
+StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
+                Evaluation evaluation = Evaluation::full);
+
+/// The same by value.
 struct StepResult {
   State next;
   StepReport report;

@@ -26,30 +26,28 @@ void place_held(const StepContext& context, State& iterate) {
   }
 }
 
-State first_guess(const StepContext& context) {
-  State guess = context.start;
+void first_guess(const StepContext& context, State& guess) {
+  guess = context.start;
   for (std::size_t i = 0; i < guess.solids.size(); ++i) {
     const int frame = context.model.solids[i].frame;
     if (frame < 0 || !context.model.scene.frames[frame].second.motion) continue;
     const Placement before = frame_displacement(context.model.scene.frames[frame].second, context.start.time);
     const Placement carry = compose(context.moved(frame), inverse(before));
     Eigen::Matrix3Xd& x = guess.solids[i].x;
-    x = ((carry.R * x).colwise() + carry.p).eval();
+    for (auto node : x.colwise()) node = (carry.R * node + carry.p).eval();
   }
   place_held(context, guess);
-  return guess;
 }
 
-void follow_points(const StepContext& context, State& iterate) {
-  rod::Configuration shape;  // of the rod of the last point: points of one rod stand together
-  int configured = -1;
+void follow_points(const StepContext& context, State& iterate, rod::Configuration& shape) {
+  int configured = -1;  // points of one rod stand together
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
     const PointModel& point = context.model.points[k];
     if (point.unknown < 0) continue;
     const int number = point.line.rod;
     const rod::Rod& rod = context.model.rods[number].rod;
     if (number != configured) {
-      shape = rod::configure(rod, base_of(context, iterate, number), iterate.rods[number].q);
+      rod::configure(rod, base_of(context, iterate, number), iterate.rods[number].q, shape);
       configured = number;
     }
     const Vec3 P = solid_point(context.model, iterate, point.solid, point.where);
@@ -121,21 +119,21 @@ double work_of_supports(const StepContext& context, const State& next, int numbe
 double work(const StepContext& context, const State& next) {
   const Model& model = context.model;
   double sum = 0.0;
-  const std::vector<double> before = motor_positions(model, context.start), after = motor_positions(model, next);
   // What is applied from the start acts in full over the first step. Parts of a step and static paths begin with
   // nothing.
   const bool whole = model.scene.analysis != Analysis::statics && context.h > 0.999 * model.scene.time.step;
   const bool first = context.start.time == 0.0 && whole;
-  const Command at_start = command_at(model, context.start.time);
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
-    const bool driven = model.actuators[i].row < 0;
-    const double force = first && driven ? at_start.actuators[i] : context.start.actuators[i];
-    sum += 0.5 * (force + next.actuators[i]) * (after[i] - before[i]);
+    const ActuatorModel& actuator = model.actuators[i];
+    const bool driven = actuator.row < 0;
+    const double force = first && driven ? told_at(actuator.drive, context.start.time) : context.start.actuators[i];
+    const double moved = motor_position(model, next, actuator) - motor_position(model, context.start, actuator);
+    sum += 0.5 * (force + next.actuators[i]) * moved;
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
-    const double before_it = first ? at_start.loads[i] : context.start.loads[i], after_it = context.command.loads[i];
-    sum += std::visit([&](const auto& load) { return work_of(load, context, next, before_it, after_it); },
-                      model.loads[i].on);
+    const double before = first ? told_at(model.loads[i].factor, context.start.time) : context.start.loads[i];
+    const double after = context.command.loads[i];
+    sum += std::visit([&](const auto& load) { return work_of(load, context, next, before, after); }, model.loads[i].on);
   }
   for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
   return sum;
@@ -143,21 +141,21 @@ double work(const StepContext& context, const State& next) {
 
 }  // namespace
 
-void finish(const StepContext& context, const Linearization& here, State& next) {
-  const Reduced& reduced = here.reduced();
-  const std::vector<SolidForces>& forces = here.forces();
+void write_forces(const Linearization& here, State& next) {
+  for (std::size_t i = 0; i < next.solids.size(); ++i) next.solids[i].reaction = here.forces()[i].reaction;
+  for (std::size_t i = 0; i < next.rods.size(); ++i) write_internal(here.reduced().internal[i], next.rods[i]);
+}
+
+void finish(const StepContext& context, State& next, rod::Configuration& shape) {
   const Model& model = context.model;
   next.time = context.start.time + context.h;
-  for (std::size_t i = 0; i < next.solids.size(); ++i) {
+  for (std::size_t i = 0; i < next.solids.size(); ++i)
     next.solids[i].v = (next.solids[i].x - context.start.solids[i].x) * context.rate;
-    next.solids[i].reaction = forces[i].reaction;
-  }
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
-    const rod::Rod& rod = model.rods[i].rod;
-    const auto shape = rod::configure(rod, base_of(context, next, static_cast<int>(i)), next.rods[i].q);
-    next.rods[i].masses = rod::mass_positions(shape);
-    next.rods[i].velocity = (next.rods[i].masses - context.start.rods[i].masses) * context.rate;
-    write_internal(reduced.internal[i], next.rods[i]);
+    RodState& own = next.rods[i];
+    rod::configure(model.rods[i].rod, base_of(context, next, static_cast<int>(i)), own.q, shape);
+    rod::mass_positions(shape, own.masses);
+    own.velocity = (own.masses - context.start.rods[i].masses) * context.rate;
   }
   for (std::size_t i = 0; i < next.actuators.size(); ++i) {
     const int row = model.actuators[i].row;
@@ -168,13 +166,6 @@ void finish(const StepContext& context, const Linearization& here, State& next) 
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
     if (model.rods[i].floats) rebase(model.rods[i].rod, next.rods[i]);
   }
-}
-
-bool finite(const State& state) {
-  for (double number : pack(state)) {
-    if (!std::isfinite(number)) return false;
-  }
-  return true;
 }
 
 namespace {

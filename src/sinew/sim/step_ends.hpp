@@ -1,4 +1,6 @@
 // What happens before the first and after the last iteration, in time steps and statics alike.
+//
+// `room` is memory to work in.
 #pragma once
 
 #include "sinew/sim/linearization.hpp"
@@ -9,16 +11,16 @@ namespace sinew {
 void place_held(const StepContext& context, State& iterate);
 
 /// First guess of the end of the step: where the start is, carried along by moving frames.
-State first_guess(const StepContext& context);
+void first_guess(const StepContext& context, State& guess);
 
 /// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
 /// that the end has reached again come on.
-void follow_points(const StepContext& context, State& iterate);
+void follow_points(const StepContext& context, State& iterate, rod::Configuration& room);
 
 /// Velocities, mass points and what else belongs to an accepted step.
-void finish(const StepContext& context, const Linearization& here, State& next);
-
-bool finite(const State& state);
+void finish(const StepContext& context, State& next, rod::Configuration& room);
+/// Reactions and internal forces, evaluated there.
+void write_forces(const Linearization& here, State& next);
 
 /// A tie about an axis whose rows hold, but half a turn off: the step was too long for it.
 bool turned_over(const StepContext& context, const State& state);

@@ -51,16 +51,16 @@ void add_held(RodRows& rod, const TieModel& tie) {
     rod.load({tie.s, Vec3::Zero(), lambda * direction});
     rod.attach(rod.row(row), point, Vec3::Zero(), direction);
     if (tie.body()) {
-      problem.G.block<1, 3>(row, tie.unknown) = -direction.transpose();
+      problem.G.add(row, tie.unknown, -direction.transpose());
       problem.r.segment<3>(tie.unknown) -= lambda * direction;
     }
     if (tie.directors) {
       const int d = director(a);
-      problem.G.block<1, 3>(row, d) = -gap.transpose() / l;
+      problem.G.add(row, d, -gap.transpose() / l);
       problem.r.segment<3>(d) -= lambda * gap / l;
       for (int i = 0; i < 3; ++i) {
-        problem.B(tie.unknown + i, d + i) -= lambda / l;
-        problem.B(d + i, tie.unknown + i) -= lambda / l;
+        problem.B.add(tie.unknown + i, d + i, -lambda / l);
+        problem.B.add(d + i, tie.unknown + i, -lambda / l);
         rod.attach(d + i, point, Vec3::Zero(), lambda / l * Vec3::Unit(i));
       }
     }
@@ -79,7 +79,7 @@ void add_held(RodRows& rod, const TieModel& tie) {
     rod.attach(rod.row(row), point, Vec3::Zero(), direction);
     if (tie.directors) {
       const int d = director(c);
-      problem.G.block<1, 3>(row, d) = -carried.transpose();
+      problem.G.add(row, d, -carried.transpose());
       problem.r.segment<3>(d) -= lambda * carried;
       for (int i = 0; i < 3; ++i) {
         rod.attach(d + i, point, offset, -lambda / l * Vec3::Unit(i));
@@ -99,7 +99,7 @@ void add_holding(RodRows& rod, const TieModel& tie) {
     const int row = tie.body_row + 3 * k, unknown = tie.unknown + 3 * k;
     const Vec3 lambda = rod.iterate().lambda.segment<3>(row), gap = is - followed;
     problem.c.segment<3>(row) = gap;
-    problem.G.block<3, 3>(row, unknown) = rod::Mat3::Identity();
+    for (int i = 0; i < 3; ++i) problem.G.add(row + i, unknown + i, 1.0);
     problem.r.segment<3>(unknown) += lambda;
     rod.load({tie.other_s, offset, -lambda});
     if (vector) rod.load({tie.other_s, Vec3::Zero(), lambda});

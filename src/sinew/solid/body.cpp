@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace sinew::solid {
@@ -125,20 +126,16 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
   return body;
 }
 
-Eigen::VectorXd at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal) {
-  Eigen::VectorXd u(body.unknowns);
+void at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal, Eigen::VectorXd& u) {
+  u.resize(body.unknowns);
   for (Eigen::Index i = 0; i < nodal.size(); ++i) {
     if (body.unknown(i) >= 0) u[body.unknown(i)] = nodal(i);
   }
-  return u;
 }
 
-Eigen::Matrix3Xd from_unknowns(const Body& body, const Eigen::Ref<const Eigen::VectorXd>& u) {
-  Eigen::Matrix3Xd nodal = Eigen::Matrix3Xd::Zero(3, body.nodes());
-  for (Eigen::Index i = 0; i < nodal.size(); ++i) {
-    if (body.unknown(i) >= 0) nodal(i) = u[body.unknown(i)];
-  }
-  return nodal;
+void from_unknowns(const Body& body, const Eigen::VectorXd& u, Eigen::Matrix3Xd& nodal) {
+  nodal.resize(3, body.nodes());
+  for (Eigen::Index i = 0; i < nodal.size(); ++i) nodal(i) = body.unknown(i) >= 0 ? u[body.unknown(i)] : 0.0;
 }
 
 namespace {
@@ -146,10 +143,6 @@ namespace {
 void scatter(const Body& body, int e, const NodeVectors& own, Eigen::Matrix3Xd& force) {
   const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
   for (Eigen::Index i = 0; i < own.cols(); ++i) force.col(nodes[static_cast<std::size_t>(i)]) += own.col(i);
-}
-
-double largest_column(const Eigen::Matrix3Xd& columns) {
-  return columns.cols() ? columns.colwise().norm().maxCoeff() : 0.0;
 }
 
 bool viscous(const Body& body, int e) {
@@ -215,17 +208,28 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
   return energy;
 }
 
-Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
-                          double* scale) {
-  const Eigen::Matrix3Xd v = (x - start.x) * start.rate;
-  Eigen::Matrix3Xd elastic = Eigen::Matrix3Xd::Zero(3, body.nodes()), damping = elastic;
-  add_forces(body, &start, x, elastic, damping);
-  const Eigen::Matrix3Xd inertia = ((v - start.v) * start.rate + body.damping_mass * v) * body.mass;
-  const Eigen::Matrix3Xd weight = gravity * body.masses.transpose();
-  if (scale)
-    *scale =
-        std::max({largest_column(elastic), largest_column(damping), largest_column(inertia), largest_column(weight)});
-  return inertia + elastic + damping - weight;
+void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
+              Residual& residual) {
+  const int n = body.nodes();
+  residual.elastic.setZero(3, n);
+  residual.viscous.setZero(3, n);
+  add_forces(body, &start, x, residual.elastic, residual.viscous);
+  // (v - v_0) / h + a v
+  residual.motion = (mass_factor(body, start.rate) * (x - start.x)) - start.rate * start.v;
+  residual.inertia.resize(3, n);
+  residual.sum.resize(3, n);
+  double largest = 0.0;  // squared
+  for (int b = 0; b < n; ++b) {
+    Vec3 inertia = Vec3::Zero();
+    for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)
+      inertia += at.value() * residual.motion.col(at.row());
+    const Vec3 weight = body.masses[b] * gravity;
+    residual.inertia.col(b) = inertia;
+    residual.sum.col(b) = inertia + residual.elastic.col(b) + residual.viscous.col(b) - weight;
+    largest = std::max({largest, inertia.squaredNorm(), residual.elastic.col(b).squaredNorm(),
+                        residual.viscous.col(b).squaredNorm(), weight.squaredNorm()});
+  }
+  residual.scale = std::sqrt(largest);
 }
 
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,

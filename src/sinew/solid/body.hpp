@@ -55,8 +55,8 @@ struct Body {
 };
 
 /// What a quantity given per node is at the body's unknowns, and a quantity at the unknowns per node, 0 where held.
-Eigen::VectorXd at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal);
-Eigen::Matrix3Xd from_unknowns(const Body& body, const Eigen::Ref<const Eigen::VectorXd>& u);
+void at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal, Eigen::VectorXd& u);
+void from_unknowns(const Body& body, const Eigen::VectorXd& u, Eigen::Matrix3Xd& nodal);
 
 /// `material` per cell, `held` 3 x nodes. `total` [kg] replaces the densities' mass, keeping how it is spread.
 Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Material> materials,
@@ -78,9 +78,14 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 /// Left minus right side of (7) under backward Euler, without loads and multipliers, 3 x n [N]:
 ///     M (v - v_0) / h + a M v + f(x) + d(x, x_0) - M g,      v = (x - x_0) / h,
 /// with Rayleigh's a and the viscous forces d (`add_viscosity`).
-/// `scale` [N] receives the largest single contribution at any node: what the residual is measured against.
-Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
-                          double* scale = nullptr);
+struct Residual {
+  Eigen::Matrix3Xd sum;
+  double scale = 0.0;  ///< [N] largest single contribution at any node: what the residual is measured against
+  Eigen::Matrix3Xd elastic, viscous, inertia, motion;  ///< [N]; the last is room to work in
+};
+/// Memory of an earlier one is used again.
+void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
+              Residual& residual);
 
 /// Take the matrix of one element, 3n x 3n, and those of a batch, without the elements in the bits of `left_out`.
 using InsertElement = std::function<void(int cell, const ElementMatrix& matrix)>;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sinew::solve {
 
@@ -10,6 +11,11 @@ namespace {
 
 using linalg::Matrix6X;
 using linalg::Vec6;
+
+/// A solution is good enough with such a residual, and refined while it is larger than the first.
+constexpr double kAimed = 1e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
+/// A compliance smaller than this part of the largest one counts as none.
+constexpr double kVanished = 1e-10;
 
 /// Symmetric scaling: every row's and column's largest entry near one (Ruiz, four sweeps).
 Eigen::VectorXd equilibrate(Eigen::MatrixXd& K) {
@@ -24,19 +30,67 @@ Eigen::VectorXd equilibrate(Eigen::MatrixXd& K) {
   return scale;
 }
 
-Eigen::Index border_size(const CoupledProblem& problem) { return problem.B.rows() + problem.W.rows(); }
+int unknowns_of(const CoupledProblem& problem) { return static_cast<int>(problem.r.size()); }
+int border_size(const CoupledProblem& problem) { return static_cast<int>(problem.r.size() + problem.c.size()); }
 
-Eigen::MatrixXd bare_border(const CoupledProblem& problem) {
-  Eigen::MatrixXd K(border_size(problem), border_size(problem));
-  K << problem.B, problem.G.transpose(), problem.G, -problem.W;
-  return K;
-}
+/// A border written out: entries (i, j) of the border are those of a matrix.
+class Dense {
+ public:
+  explicit Dense(Eigen::MatrixXd& K) : K_(K) {}
+  void add(int i, int j, double value) { K_(i, j) += value; }
+  /// Subtracts a matrix over the border unknowns `shift` + at.
+  void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M) {
+    for (Eigen::Index b = 0; b < M.cols(); ++b) {
+      for (Eigen::Index a = 0; a < M.rows(); ++a) K_(shift + at[a], shift + at[b]) -= M(a, b);
+    }
+  }
 
-/// Entries of a border vector that belong to a chain's attachments.
-Eigen::VectorXd gather(const Eigen::VectorXd& y, const std::vector<int>& at) {
-  Eigen::VectorXd own(static_cast<Eigen::Index>(at.size()));
-  for (std::size_t i = 0; i < at.size(); ++i) own[static_cast<Eigen::Index>(i)] = y[at[i]];
-  return own;
+ private:
+  Eigen::MatrixXd& K_;
+};
+
+/// The same of a symmetric matrix, in the order of its elimination: half of it is enough.
+class Half {
+ public:
+  Half(linalg::SymmetricFactor& factor, const std::vector<int>& place) : factor_(factor), place_(place) {}
+  void add(int i, int j, double value) {
+    if (place_[i] >= place_[j]) factor_.column(place_[j])[place_[i]] += value;
+  }
+  void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M) {
+    const auto n = static_cast<int>(M.cols());
+    bool ascending = true;
+    for (int a = 1; a < n; ++a) ascending &= place_[shift + at[a - 1]] < place_[shift + at[a]];
+    for (int b = 0; b < n; ++b) {
+      const int own = place_[shift + at[b]];
+      double* const column = factor_.column(own);
+      for (int a = b; a < n; ++a) {
+        const int other = place_[shift + at[a]];
+        if (ascending || other > own) {
+          column[other] -= M(a, b);
+        } else {
+          // The same unknown twice stands on both sides of the diagonal.
+          factor_.column(other)[own] -= a != b && other == own ? 2.0 * M(a, b) : M(a, b);
+        }
+      }
+    }
+  }
+
+ private:
+  linalg::SymmetricFactor& factor_;
+  const std::vector<int>& place_;
+};
+
+/// What the border is without chains.
+template <class Border>
+void fill_bare(const CoupledProblem& problem, Border& border) {
+  const int nz = unknowns_of(problem);
+  for (const auto& [row, column, value] : problem.B) border.add(row, column, value);
+  for (const auto& [row, column, value] : problem.G) {
+    border.add(nz + row, column, value);
+    border.add(column, nz + row, value);
+  }
+  for (const auto& [row, column, value] : problem.W) border.add(nz + row, nz + column, -value);
+  for (const VolumePart& volume : problem.volumes) border.subtract(volume.at, nz, volume.W);
 }
 
 auto base_of(const ChainPart& part, Eigen::VectorXd& y) { return y.segment(part.first_base, part.base.cols()); }
@@ -48,15 +102,31 @@ Vec6 total_wrench(const ChainPart& part, const Eigen::VectorXd& y) {
   return sum;
 }
 
-/// R^T y of all attachments, single ones and those along the whole chain.
-Eigen::VectorXd pulled(const ChainPart& part, const Eigen::VectorXd& y) {
-  Eigen::VectorXd pull = linalg::across(part.chain, part.attachments, gather(y, part.at));
+/// pull = R^T y of all attachments, single ones and those along the whole chain; `own` is room.
+void pull_of(const ChainPart& part, const Eigen::VectorXd& y, Eigen::VectorXd& own, Eigen::VectorXd& pull) {
+  own.resize(static_cast<Eigen::Index>(part.at.size()));
+  for (std::size_t i = 0; i < part.at.size(); ++i) own[static_cast<Eigen::Index>(i)] = y[part.at[i]];
+  linalg::across(part.chain, part.attachments, own, pull);
   for (std::size_t f = 0; f < part.whole_at.size(); ++f)
     pull += y[part.whole_at[f]] * part.whole.col(static_cast<Eigen::Index>(f));
-  return pull;
 }
 
-constexpr double kTolerance = 1e-9;
+/// Visits the unknowns of the border that a chain ties to each other.
+template <class Visit>
+void each_tied(const ChainPart& part, const Visit& visit) {
+  for (Eigen::Index i = 0; i < part.base.cols(); ++i) visit(part.first_base + static_cast<int>(i));
+  for (const int i : part.at) visit(i);
+  for (const int i : part.whole_at) visit(i);
+}
+
+double largest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; }
+
+/// to += from.
+void add_solution(const CoupledSolution& from, CoupledSolution& to) {
+  to.dz += from.dz;
+  to.dlambda += from.dlambda;
+  for (std::size_t n = 0; n < to.dq.size(); ++n) to.dq[n] += from.dq[n];
+}
 
 }  // namespace
 
@@ -64,7 +134,8 @@ Eigen::MatrixXd written_out(const CoupledProblem& problem) {
   Eigen::Index size = border_size(problem);
   for (const ChainPart& part : problem.chains) size += part.chain.coordinates();
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
-  K.topLeftCorner(border_size(problem), border_size(problem)) = bare_border(problem);
+  Dense border(K);
+  fill_bare(problem, border);
   Eigen::Index at = border_size(problem);
   for (const ChainPart& part : problem.chains) {
     const Eigen::Index n = part.chain.coordinates(), nb = part.base.cols();
@@ -89,241 +160,364 @@ Eigen::MatrixXd written_out(const CoupledProblem& problem) {
   return K;
 }
 
-RightSide right_side(const CoupledProblem& problem) {
-  RightSide right{problem.r, problem.c, {}};
-  for (const ChainPart& part : problem.chains) right.chains.push_back(part.r);
-  return right;
+void right_side(const CoupledProblem& problem, RightSide& right) {
+  right.r = problem.r;
+  right.c = problem.c;
+  right.chains.resize(problem.chains.size());
+  for (std::size_t n = 0; n < problem.chains.size(); ++n) right.chains[n] = problem.chains[n].r;
 }
 
-CoupledFactor::CoupledFactor(const CoupledProblem& problem) : problem_(problem) {
-  K_ = bare_border(problem);
+void CoupledFactor::factor(const CoupledProblem& problem) {
+  problem_ = &problem;
+  lu_.reset();
   factors_.resize(problem.chains.size());
-  bool ok = true;
-  for (std::size_t i = 0; i < problem.chains.size() && ok; ++i) ok = factors_[i].factor(problem.chains[i].chain);
-  if (ok) {
-    eliminate_chains();
-    factor_symmetric();
-  } else {
-    join_chains();
+  condensed_.resize(problem.chains.size());
+  bool chains = true, symmetric = true;
+  for (std::size_t n = 0; n < problem.chains.size() && chains; ++n) {
+    const ChainPart& part = problem.chains[n];
+    chains = factors_[n].factor(part.chain);
+    symmetric &= part.chain.symmetric();
+    if (chains) factors_[n].condense(part.attachments, condensed_[n]);
+  }
+  for (const VolumePart& volume : problem.volumes) symmetric &= volume.symmetric;
+  if (!chains || !symmetric || !factor_symmetric()) factor_general(!chains);
+}
+
+/// Rows that feel a compliance have negative pivots, what they hold then positive ones; the rest are rows again. In
+/// this order a row of the matrix begins with the first unknown that anything ties it to.
+void CoupledFactor::place() {
+  const CoupledProblem& problem = *problem_;
+  const int nz = unknowns_of(problem), size = border_size(problem);
+  constexpr int kNone = -1, kYields = -2;
+  place_.assign(static_cast<std::size_t>(size), kNone);
+  for (const VolumePart& volume : problem.volumes) {
+    for (const int row : volume.at) place_[nz + row] = kYields;
+  }
+  for (const auto& entry : problem.W) place_[nz + entry.row] = kYields;
+  for (const ChainPart& part : problem.chains) {
+    each_tied(part, [&](int i) {
+      if (i >= nz) place_[i] = kYields;
+    });
+  }
+  int next = 0;
+  for (int i = nz; i < size; ++i) {
+    if (place_[i] == kYields) place_[i] = next++;
+  }
+  yielding_ = next;
+  for (int i = 0; i < nz; ++i) place_[i] = next++;
+  for (int i = nz; i < size; ++i) {
+    if (place_[i] == kNone) place_[i] = next++;
+  }
+  begin_.resize(static_cast<std::size_t>(size));
+  std::iota(begin_.begin(), begin_.end(), 0);
+  const auto tie = [this](int i, int j) {
+    const auto [first, last] = std::minmax(place_[i], place_[j]);
+    begin_[last] = std::min(begin_[last], first);
+  };
+  for (const auto& entry : problem.B) tie(entry.row, entry.column);
+  for (const auto& entry : problem.G) tie(nz + entry.row, entry.column);
+  for (const auto& entry : problem.W) tie(nz + entry.row, nz + entry.column);
+  for (const VolumePart& volume : problem.volumes) {
+    if (volume.at.empty()) continue;
+    const int first = *std::min_element(volume.at.begin(), volume.at.end());  // rows keep their order
+    for (const int row : volume.at) tie(nz + first, nz + row);
+  }
+  for (const ChainPart& part : problem.chains) {
+    int first = -1;
+    each_tied(part, [&](int i) {
+      if (first < 0 || place_[i] < place_[first]) first = i;
+    });
+    each_tied(part, [&](int i) { tie(first, i); });
   }
 }
 
-void CoupledFactor::factor_symmetric() {
-  if (K_.rows() == 0 || !K_.allFinite() || !K_.isApprox(K_.transpose(), 1e-12)) return;
-  // Rows that feel a compliance have negative pivots, what they hold then positive ones; the rest are rows again.
-  std::vector<int> order;
-  const auto nz = static_cast<int>(problem_.B.rows()), all = static_cast<int>(K_.rows());
-  const auto yields = [this](int row) { return K_(row, row) < 0.0; };
-  for (int i = nz; i < all; ++i)
-    if (yields(i)) order.push_back(i);
-  for (int i = 0; i < nz; ++i) order.push_back(i);
-  for (int i = nz; i < all; ++i)
-    if (!yields(i)) order.push_back(i);
-  symmetric_ = std::make_unique<linalg::SymmetricFactor>();
-  if (!symmetric_->factor(K_, order)) symmetric_.reset();
+/// Weights of the border's unknowns, so that rows of different units are judged alike, by Ruiz' sweeps over its few
+/// entries and its diagonal, which bounds what is dense.
+void CoupledFactor::weigh() {
+  const CoupledProblem& problem = *problem_;
+  const int nz = unknowns_of(problem), size = border_size(problem);
+  diagonal_.resize(size);
+  for (int i = 0; i < size; ++i) diagonal_[i] = std::abs(symmetric_.column(place_[i])[place_[i]]);
+  double most = 0.0;
+  for (const VolumePart& volume : problem.volumes) {
+    for (const int row : volume.at) most = std::max(most, diagonal_[nz + row]);
+  }
+  for (const ChainPart& part : problem.chains) {
+    for (const int i : part.at) most = i >= nz ? std::max(most, diagonal_[i]) : most;
+  }
+  least_.assign(static_cast<std::size_t>(size), 0.0);
+  std::fill_n(least_.begin(), yielding_, -kVanished * most);
+  scale_.setOnes(size);
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    largest_ = diagonal_.cwiseProduct(scale_.cwiseProduct(scale_));
+    const auto meet = [this](int i, int j, double value) {
+      const double weighed = std::abs(value) * scale_[i] * scale_[j];
+      largest_[i] = std::max(largest_[i], weighed);
+      largest_[j] = std::max(largest_[j], weighed);
+    };
+    for (const auto& [row, column, value] : problem.G) meet(nz + row, column, value);
+    for (const auto& [row, column, value] : problem.B) meet(row, column, value);
+    for (int i = 0; i < size; ++i) scale_[i] /= largest_[i] > 0.0 ? std::sqrt(largest_[i]) : 1.0;
+  }
 }
 
-void CoupledFactor::eliminate_chains() {
-  for (std::size_t n = 0; n < problem_.chains.size(); ++n) {
-    const ChainPart& part = problem_.chains[n];
+bool CoupledFactor::factor_symmetric() {
+  const CoupledProblem& problem = *problem_;
+  const int size = border_size(problem);
+  place();
+  symmetric_.start(size);
+  Half border(symmetric_, place_);
+  fill(border);
+  weigh();
+  if (!scale_.allFinite() || !symmetric_.factor(begin_, least_)) return false;
+  // What is left of a pivot must not be rounding of the others of its kind.
+  const int nz = unknowns_of(problem);
+  const auto sound = [&](int first, int end) {
+    double least = INFINITY, most = 0.0;
+    for (int i = first; i < end; ++i) {
+      if (place_[i] < yielding_) continue;
+      const double pivot = std::abs(symmetric_.pivot(place_[i])) * scale_[i] * scale_[i];
+      least = std::min(least, pivot);
+      most = std::max(most, pivot);
+    }
+    return most == 0.0 || least > 1e-14 * most;
+  };
+  if (!sound(0, nz) || !sound(nz, size)) return false;
+  kind_ = Kind::symmetric;
+  joined_ = false;
+  return true;
+}
+
+void CoupledFactor::factor_general(bool join_chains) {
+  joined_ = join_chains;
+  if (joined_) {
+    K_ = written_out(*problem_);
+  } else {
+    K_.setZero(border_size(*problem_), border_size(*problem_));
+    Dense border(K_);
+    fill(border);
+  }
+  scale_ = equilibrate(K_);
+  kind_ = Kind::general;
+  if (K_.rows() == 0 || !K_.allFinite()) return;
+  lu_ = std::make_unique<Eigen::PartialPivLU<Eigen::MatrixXd>>(K_);
+  const Eigen::VectorXd pivots = lu_->matrixLU().diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > 1e-14 * pivots.maxCoeff()) || !(lu_->rcond() > 1e-15)) kind_ = Kind::singular;
+}
+
+/// The border with all chains eliminated.
+template <class Border>
+void CoupledFactor::fill(Border& border) {
+  fill_bare(*problem_, border);
+  for (std::size_t n = 0; n < problem_->chains.size(); ++n) {
+    const ChainPart& part = problem_->chains[n];
     const linalg::ChainFactor& factor = factors_[n];
-    const auto nb = part.base.cols(), first = static_cast<Eigen::Index>(part.first_base);
-    const auto condensed = factor.condense(part.attachments);
-    K_.block(first, first, nb, nb) += part.base.transpose() * factor.base_response() * part.base;
-    const Eigen::MatrixXd to_base = part.base.transpose() * condensed.arriving;
-    const Eigen::MatrixXd from_base = condensed.answering.transpose() * part.base;
-    for (std::size_t i = 0; i < part.at.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      K_.block(first, part.at[i], nb, 1) += to_base.col(column);
-      K_.block(part.at[i], first, 1, nb) += from_base.row(column);
-      for (std::size_t l = 0; l < part.at.size(); ++l)
-        K_(part.at[i], part.at[l]) -= condensed.W(column, static_cast<Eigen::Index>(l));
+    const linalg::ChainFactor::Condensed& condensed = condensed_[n];
+    const auto nb = static_cast<int>(part.base.cols());
+    border.subtract(part.at, 0, condensed.W);
+    for (int i = 0; i < nb; ++i) {
+      const Vec6 felt = factor.base_response().transpose() * part.base.col(i);
+      const int own = part.first_base + i;
+      for (int j = 0; j < nb; ++j) border.add(own, part.first_base + j, felt.dot(part.base.col(j)));
+      for (std::size_t k = 0; k < part.at.size(); ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        border.add(own, part.at[k], part.base.col(i).dot(condensed.arriving.col(column)));
+        border.add(part.at[k], own, part.base.col(i).dot(condensed.answering.col(column)));
+      }
     }
     for (std::size_t f = 0; f < part.whole_at.size(); ++f) {
       const auto column = static_cast<Eigen::Index>(f);
       Vec6 base, base_left;
-      const Eigen::VectorXd x = factor.solve(part.whole.col(column), Vec6::Zero(), &base);
-      const Eigen::VectorXd left = factor.solve_transposed(part.whole.col(column), &base_left);
-      const Eigen::VectorXd seen = linalg::along(part.chain, part.attachments, x);
-      const Eigen::VectorXd seen_left = linalg::along(part.chain, part.attachments, left);
+      Eigen::VectorXd x = part.whole.col(column), left = x, seen, seen_left;
+      factor.solve(x, Vec6::Zero(), &base);
+      factor.solve_transposed(left, &base_left);
+      linalg::along(part.chain, part.attachments, x, seen);
+      linalg::along(part.chain, part.attachments, left, seen_left);
       const int at = part.whole_at[f];
       for (std::size_t i = 0; i < part.at.size(); ++i) {
-        K_(part.at[i], at) -= seen[static_cast<Eigen::Index>(i)];
-        K_(at, part.at[i]) -= seen_left[static_cast<Eigen::Index>(i)];
+        border.add(part.at[i], at, -seen[static_cast<Eigen::Index>(i)]);
+        border.add(at, part.at[i], -seen_left[static_cast<Eigen::Index>(i)]);
       }
       for (std::size_t g = 0; g < part.whole_at.size(); ++g)
-        K_(part.whole_at[g], at) -= part.whole.col(static_cast<Eigen::Index>(g)).dot(x);
-      K_.block(first, at, nb, 1) -= part.base.transpose() * base;
-      K_.block(at, first, 1, nb) -= base_left.transpose() * part.base;
+        border.add(part.whole_at[g], at, -part.whole.col(static_cast<Eigen::Index>(g)).dot(x));
+      for (int i = 0; i < nb; ++i) {
+        border.add(part.first_base + i, at, -part.base.col(i).dot(base));
+        border.add(at, part.first_base + i, -part.base.col(i).dot(base_left));
+      }
     }
   }
-  scale_ = equilibrate(K_);
 }
 
-void CoupledFactor::join_chains() {
-  factors_.clear();
-  K_ = written_out(problem_);
-  scale_ = equilibrate(K_);
-  lu_.reset();
-}
-
-CoupledSolution CoupledFactor::solve_once(const RightSide& right) const {
-  const Eigen::Index nz = problem_.B.rows(), border = border_size(problem_);
-  CoupledSolution solution;
-  Eigen::VectorXd b(K_.rows());
-  b.head(nz) = -right.r;
-  b.segment(nz, border - nz) = right.c;
-  const bool written_out = factors_.size() != problem_.chains.size();
+void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution) {
+  const CoupledProblem& problem = *problem_;
+  const Eigen::Index nz = unknowns_of(problem), border = border_size(problem);
+  Eigen::VectorXd& y = y_;
+  y.resize(joined_ ? K_.rows() : border);
+  y.head(nz) = -right.r;
+  y.segment(nz, border - nz) = right.c;
+  solution.dq.resize(problem.chains.size());
   Eigen::Index at = border;
-  for (std::size_t n = 0; n < problem_.chains.size(); ++n) {
-    const ChainPart& part = problem_.chains[n];
-    if (written_out) {
-      b.segment(at, part.r.size()) = -right.chains[n];
+  for (std::size_t n = 0; n < problem.chains.size(); ++n) {
+    const ChainPart& part = problem.chains[n];
+    if (joined_) {
+      y.segment(at, part.r.size()) = -right.chains[n];
       at += part.r.size();
       continue;
     }
     Vec6 base;
-    const Eigen::VectorXd x = factors_[n].solve(-right.chains[n], Vec6::Zero(), &base);
-    base_of(part, b) -= part.base.transpose() * base;
-    const Eigen::VectorXd seen = linalg::along(part.chain, part.attachments, x);
-    for (std::size_t i = 0; i < part.at.size(); ++i) b[part.at[i]] -= seen[static_cast<Eigen::Index>(i)];
+    Eigen::VectorXd& x = solution.dq[n];
+    x = -right.chains[n];
+    factors_[n].solve(x, Vec6::Zero(), &base);
+    base_of(part, y).noalias() -= part.base.transpose().lazyProduct(base);
+    linalg::along(part.chain, part.attachments, x, seen_);
+    for (std::size_t i = 0; i < part.at.size(); ++i) y[part.at[i]] -= seen_[static_cast<Eigen::Index>(i)];
     for (std::size_t f = 0; f < part.whole_at.size(); ++f)
-      b[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
+      y[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
   }
-  b.array() *= scale_.array();
-  Eigen::VectorXd y = b;
-  if (singular_) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
-    cod.setThreshold(1e-12);
-    cod.compute(K_);
-    y = cod.solve(b);
-    solution.redundant = true;
-  } else if (b.size() > 0) {
-    y = symmetric_ ? symmetric_->solve(b) : lu_->solve(b);
+  if (kind_ == Kind::symmetric) {
+    ordered_.resize(symmetric_.room());
+    for (Eigen::Index i = 0; i < border; ++i) ordered_[place_[i]] = y[i];
+    symmetric_.solve(ordered_.data());
+    for (Eigen::Index i = 0; i < border; ++i) y[i] = ordered_[place_[i]];
+  } else if (y.size() > 0) {
+    y.array() *= scale_.array();
+    if (kind_ == Kind::singular) {
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
+      cod.setThreshold(1e-12);
+      cod.compute(K_);
+      y = cod.solve(Eigen::VectorXd(y));
+    } else {
+      y = lu_->solve(Eigen::VectorXd(y));
+    }
+    y.array() *= scale_.array();
   }
-  y.array() *= scale_.array();
   solution.dz = y.head(nz);
   solution.dlambda = y.segment(nz, border - nz);
   at = border;
-  Eigen::VectorXd outside = y.head(border);
-  for (std::size_t n = 0; n < problem_.chains.size(); ++n) {
-    const ChainPart& part = problem_.chains[n];
-    if (written_out) {
-      solution.dq.emplace_back(y.segment(at, part.r.size()));
+  for (std::size_t n = 0; n < problem.chains.size(); ++n) {
+    const ChainPart& part = problem.chains[n];
+    Eigen::VectorXd& x = solution.dq[n];
+    if (joined_) {
+      x = y.segment(at, part.r.size());
       at += part.r.size();
-    } else {
-      const Vec6 twist = part.base * base_of(part, outside);
-      solution.dq.push_back(factors_[n].solve(-right.chains[n] - pulled(part, outside), twist));
-    }
-  }
-  return solution;
-}
-
-RightSide CoupledFactor::residual(const RightSide& right, const CoupledSolution& solution, double& relative) const {
-  const Eigen::Index nz = problem_.B.rows(), border = border_size(problem_);
-  Eigen::VectorXd y(border), left(border), bound(border);
-  y << solution.dz, solution.dlambda;
-  left << -right.r - problem_.B * solution.dz - problem_.G.transpose() * solution.dlambda,
-      right.c - problem_.G * solution.dz + problem_.W * solution.dlambda;
-  bound << right.r.cwiseAbs() + problem_.B.cwiseAbs() * solution.dz.cwiseAbs() +
-               problem_.G.transpose().cwiseAbs() * solution.dlambda.cwiseAbs(),
-      right.c.cwiseAbs() + problem_.G.cwiseAbs() * solution.dz.cwiseAbs() +
-          problem_.W.cwiseAbs() * solution.dlambda.cwiseAbs();
-  RightSide rest;
-  relative = 0.0;
-  for (std::size_t n = 0; n < problem_.chains.size(); ++n) {
-    const ChainPart& part = problem_.chains[n];
-    const Eigen::VectorXd& x = solution.dq[n];
-    const Vec6 twist = part.base * base_of(part, y);
-    const Eigen::VectorXd pull = pulled(part, y), own = linalg::multiply(part.chain, x, twist);
-    rest.chains.emplace_back(right.chains[n] + own + pull);  // stands with the sign of r
-    const Eigen::VectorXd base = part.base.transpose() * (part.chain.V * x + total_wrench(part, y));
-    base_of(part, left) -= base;
-    base_of(part, bound) += base.cwiseAbs();
-    const Eigen::VectorXd seen = linalg::along(part.chain, part.attachments, x);
-    for (std::size_t i = 0; i < part.at.size(); ++i) {
-      const double moved = seen[static_cast<Eigen::Index>(i)] + part.attachments[i].g.dot(twist);
-      left[part.at[i]] -= moved;
-      bound[part.at[i]] += std::abs(moved);
-    }
-    for (std::size_t f = 0; f < part.whole_at.size(); ++f) {
-      const double moved = part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
-      left[part.whole_at[f]] -= moved;
-      bound[part.whole_at[f]] += std::abs(moved);
-    }
-    if (x.size() > 0) {
-      const double size = (right.chains[n].cwiseAbs() + own.cwiseAbs() + pull.cwiseAbs()).lpNorm<Eigen::Infinity>();
-      if (size > 0.0) relative = std::max(relative, rest.chains.back().lpNorm<Eigen::Infinity>() / size);
-      if (!x.allFinite()) relative = INFINITY;
-    }
-  }
-  if (border > 0) {
-    // Row by row in the scaled sense: what is left over against what was summed up, both as the border weighs them.
-    const Eigen::VectorXd weight = scale_.head(border);
-    const double size = bound.cwiseProduct(weight).lpNorm<Eigen::Infinity>();
-    if (size > 0.0) relative = std::max(relative, left.cwiseProduct(weight).lpNorm<Eigen::Infinity>() / size);
-  }
-  rest.r = -left.head(nz);
-  rest.c = left.tail(border - nz);
-  if (!left.allFinite()) relative = INFINITY;
-  return rest;
-}
-
-CoupledSolution CoupledFactor::solve(const RightSide& right) {
-  for (;;) {
-    const bool written_out = factors_.size() != problem_.chains.size();
-    CoupledSolution solution;
-    if (!K_.allFinite()) {
-      if (written_out || problem_.chains.empty()) return solution;
-      join_chains();
       continue;
     }
-    if (!symmetric_ && !lu_ && K_.rows() > 0) {
-      lu_ = std::make_unique<Eigen::PartialPivLU<Eigen::MatrixXd>>(K_);
-      const Eigen::VectorXd pivots = lu_->matrixLU().diagonal().cwiseAbs();
-      singular_ = !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff()) || !(lu_->rcond() > 1e-15);
+    pull_of(part, y, own_, x);
+    x = -right.chains[n] - x;
+    Vec6 twist;
+    twist.noalias() = part.base.lazyProduct(base_of(part, y));
+    factors_[n].solve(x, twist);
+  }
+}
+
+double CoupledFactor::residual(const RightSide& right, const CoupledSolution& solution, RightSide& rest) {
+  const CoupledProblem& problem = *problem_;
+  const Eigen::Index nz = unknowns_of(problem), border = border_size(problem);
+  y_.resize(border);
+  y_ << solution.dz, solution.dlambda;
+  Eigen::VectorXd& left = left_;
+  left.resize(border);
+  left << -right.r, right.c;
+  const double given = largest(left.cwiseProduct(scale_.head(border)));
+  const auto* z = y_.data();
+  const auto* lambda = y_.data() + nz;
+  for (const auto& [row, column, value] : problem.B) left[row] -= value * z[column];
+  for (const auto& [row, column, value] : problem.G) {
+    left[nz + row] -= value * z[column];
+    left[column] -= value * lambda[row];
+  }
+  for (const auto& [row, column, value] : problem.W) left[nz + row] += value * lambda[column];
+  for (const VolumePart& volume : problem.volumes) {
+    const auto count = static_cast<Eigen::Index>(volume.at.size());
+    own_.resize(count);
+    seen_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) own_[i] = lambda[volume.at[i]];
+    seen_.noalias() = volume.W * own_;
+    for (Eigen::Index i = 0; i < count; ++i) left[nz + volume.at[i]] += seen_[i];
+  }
+  double relative = 0.0;
+  rest.chains.resize(problem.chains.size());
+  for (std::size_t n = 0; n < problem.chains.size(); ++n) {
+    const ChainPart& part = problem.chains[n];
+    const Eigen::VectorXd& x = solution.dq[n];
+    Vec6 twist, wrench;
+    twist.noalias() = part.base.lazyProduct(base_of(part, y_));
+    wrench.noalias() = part.chain.V.lazyProduct(x);
+    wrench += total_wrench(part, y_);
+    base_of(part, left).noalias() -= part.base.transpose().lazyProduct(wrench);
+    linalg::along(part.chain, part.attachments, x, seen_);
+    for (std::size_t i = 0; i < part.at.size(); ++i)
+      left[part.at[i]] -= seen_[static_cast<Eigen::Index>(i)] + part.attachments[i].g.dot(twist);
+    for (std::size_t f = 0; f < part.whole_at.size(); ++f)
+      left[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
+    Eigen::VectorXd& own = rest.chains[n];  // stands with the sign of r
+    pull_of(part, y_, own_, own);
+    linalg::multiply(part.chain, x, twist, seen_);
+    const double size = std::max({largest(right.chains[n]), largest(own), largest(seen_)});
+    own += right.chains[n] + seen_;
+    if (size > 0.0) relative = std::max(relative, largest(own) / size);
+    if (!x.allFinite()) relative = INFINITY;
+  }
+  const double size = std::max(given, largest(y_.cwiseQuotient(scale_.head(border))));
+  if (size > 0.0) relative = std::max(relative, largest(left.cwiseProduct(scale_.head(border))) / size);
+  rest.r = -left.head(nz);
+  rest.c = left.tail(border - nz);
+  return left.allFinite() ? relative : INFINITY;
+}
+
+void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {
+  constexpr int kRefinements = 4;
+  solution.ok = false;
+  for (;;) {
+    if (kind_ == Kind::symmetric || K_.allFinite()) {
+      solve_once(right, solution);
+      solution.residual = residual(right, solution, rest_);
+      for (int i = 0; i < kRefinements && solution.residual > kAimed && std::isfinite(solution.residual); ++i) {
+        if (kind_ == Kind::singular) break;
+        solve_once(rest_, correction_);
+        add_solution(solution, correction_);
+        const double relative = residual(right, correction_, rest_);
+        if (!(relative < solution.residual)) break;
+        std::swap(solution, correction_);
+        solution.residual = relative;
+      }
+      solution.redundant = kind_ == Kind::singular;
+      const double limit = kind_ == Kind::symmetric ? kSymmetric : kind_ == Kind::general ? kTolerance : kSingular;
+      solution.ok = solution.residual < limit;
+      if (solution.ok) return;
     }
-    solution = solve_once(right);
-    double relative = INFINITY;
-    const RightSide rest = residual(right, solution, relative);
-    solution.residual = relative;
-    if (std::isfinite(relative) && !singular_) {  // one refinement
-      CoupledSolution correction = solve_once(rest);
-      correction.dz += solution.dz;
-      correction.dlambda += solution.dlambda;
-      for (std::size_t n = 0; n < correction.dq.size(); ++n) correction.dq[n] += solution.dq[n];
-      residual(right, correction, relative);
-      if (relative <= solution.residual) solution = std::move(correction);
-      solution.residual = std::min(solution.residual, relative);
-    }
-    solution.redundant = singular_;
-    solution.ok = solution.residual < (singular_ ? 1e-6 : kTolerance);
-    if (solution.ok) return solution;
-    if (symmetric_) {
-      symmetric_.reset();
-    } else if (!singular_ && (written_out || problem_.chains.empty())) {
-      singular_ = true;  // its LU says it is not, its residual that it is
-    } else if (!written_out && !problem_.chains.empty()) {
-      join_chains();
-      singular_ = false;
+    const bool last = joined_ || problem_->chains.empty();
+    if (kind_ == Kind::symmetric) {
+      factor_general(false);
+    } else if (!last) {
+      factor_general(true);
+    } else if (kind_ == Kind::general && K_.allFinite()) {
+      kind_ = Kind::singular;  // its LU says it is not, its residual that it is
     } else {
-      return solution;
+      return;
     }
   }
 }
 
 int CoupledFactor::negative() const {
   int count = 0;
-  for (const linalg::ChainFactor& factor : factors_) count += factor.negative();
-  if (symmetric_) return count + symmetric_->negative();
+  if (!joined_) {
+    for (const linalg::ChainFactor& factor : factors_) count += factor.negative();
+  }
+  if (kind_ == Kind::symmetric) return count + symmetric_.negative();
   if (K_.rows() == 0 || !K_.allFinite()) return count;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
   return count + static_cast<int>((border.eigenvalues().array() < 0.0).count());
 }
 
 CoupledSolution solve_direct(const CoupledProblem& problem) {
-  CoupledFactor factor(problem);
-  return factor.solve(right_side(problem));
+  CoupledFactor factor;
+  factor.factor(problem);
+  RightSide right;
+  right_side(problem, right);
+  CoupledSolution solution;
+  factor.solve(right, solution);
+  return solution;
 }
 
 }  // namespace sinew::solve

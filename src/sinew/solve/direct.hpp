@@ -12,6 +12,36 @@
 
 namespace sinew::solve {
 
+/// The few numbers of a matrix that has few; those of one place add up.
+class Entries {
+ public:
+  struct Entry {
+    int row = 0, column = 0;
+    double value = 0.0;
+  };
+  void add(int row, int column, double value) { all_.push_back({row, column, value}); }
+  /// A block with its first entry there.
+  template <class Block>
+  void add(int row, int column, const Eigen::MatrixBase<Block>& block) {
+    for (int j = 0; j < block.cols(); ++j) {
+      for (int i = 0; i < block.rows(); ++i) add(row + i, column + j, block(i, j));
+    }
+  }
+  void clear() { all_.clear(); }
+  auto begin() const { return all_.begin(); }
+  auto end() const { return all_.end(); }
+
+ private:
+  std::vector<Entry> all_;
+};
+
+/// A volume as its rows feel it.
+struct VolumePart {
+  std::vector<int> at;  ///< the rows it takes part in
+  Eigen::MatrixXd W;    ///< H A_x^-1 H^T over them
+  bool symmetric = true;
+};
+
 /// The strains of one rod: A x + U^T T y_b + R^T y = -r, where y_b are its base's coordinates, y all border unknowns.
 struct ChainPart {
   linalg::Chain chain;    ///< A
@@ -32,8 +62,10 @@ struct ChainPart {
 /// the paper's (11), (12). What remains, the border, needs no inverse of B, which is singular for a straight cable
 /// whose abscissae are unknown, and indefinite under tension.
 struct CoupledProblem {
-  Eigen::MatrixXd B, G, W;
-  Eigen::VectorXd r, c;
+  Entries B, G;
+  std::vector<VolumePart> volumes;  ///< W: the sum of theirs ...
+  Entries W;                        ///< ... and of these
+  Eigen::VectorXd r, c;             ///< as long as z and lambda
   std::vector<ChainPart> chains;
 };
 
@@ -45,7 +77,7 @@ struct RightSide {
   Eigen::VectorXd r, c;
   std::vector<Eigen::VectorXd> chains;
 };
-RightSide right_side(const CoupledProblem& problem);
+void right_side(const CoupledProblem& problem, RightSide& right);
 
 struct CoupledSolution {
   Eigen::VectorXd dz, dlambda;
@@ -55,35 +87,56 @@ struct CoupledSolution {
   double residual = 0.0;            ///< largest relative residual of the scaled equations
 };
 
-/// Factors once, solves often. Chains are eliminated in time proportional to their length; the border is dense, scaled
-/// so that rows of different units weigh alike, and its solutions are refined once. A symmetric border is factored as
-/// such, the rows that feel a compliance first; where that is not good enough, by an LU. Where a chain has no good
-/// pivots (strains that nothing but the constraints hold), it joins the border; where the border is singular, a
-/// complete orthogonal decomposition takes over.
+/// Factors once, solves often, and keeps its memory for the next problem. Chains are eliminated in time proportional to
+/// their length. The border is dense; solutions are refined. A symmetric one is factored as such, the rows that feel a
+/// compliance first, then z; a compliance that vanishes in some direction (a point of which all nodes are held) is
+/// given a hundred-millionth of the others' and refined away. Where that is not good enough, an LU serves. Where a
+/// chain has no good pivots (strains that nothing but the constraints hold), it joins the border; where the border is
+/// singular, a complete orthogonal decomposition takes over.
 class CoupledFactor {
  public:
-  explicit CoupledFactor(const CoupledProblem& problem);
-  CoupledSolution solve(const RightSide& right);
+  /// The problem must outlive its solutions.
+  void factor(const CoupledProblem& problem);
+  void solve(const RightSide& right, CoupledSolution& solution);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
   /// no more of them than rows. Costs an eigenvalue problem of the border where that has no symmetric factor.
   int negative() const;
 
  private:
-  void eliminate_chains();
-  void join_chains();
-  void factor_symmetric();
-  CoupledSolution solve_once(const RightSide& right) const;
-  /// Right side minus matrix times solution, and the largest relative entry.
-  RightSide residual(const RightSide& right, const CoupledSolution& solution, double& relative) const;
+  enum class Kind { symmetric, general, singular };
 
-  const CoupledProblem& problem_;
-  std::vector<linalg::ChainFactor> factors_;  ///< empty when the chains are written out
-  Eigen::MatrixXd K_;                         ///< scaled border
-  Eigen::VectorXd scale_;
-  std::unique_ptr<linalg::SymmetricFactor> symmetric_;        ///< the border's, where it serves
-  std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;  ///< or else this
-  bool singular_ = false;
+  void place();
+  bool factor_symmetric();
+  void factor_general(bool join_chains);
+  template <class Border>
+  void fill(Border& border);
+  void weigh();
+  void solve_once(const RightSide& right, CoupledSolution& solution);
+  /// Right side minus matrix times solution, and its largest entry beside the right side's and the solution's, as the
+  /// border weighs them.
+  double residual(const RightSide& right, const CoupledSolution& solution, RightSide& rest);
+
+  const CoupledProblem* problem_ = nullptr;
+  Kind kind_ = Kind::general;
+  bool joined_ = false;  ///< chains are written out in the border
+  std::vector<linalg::ChainFactor> factors_;
+  std::vector<linalg::ChainFactor::Condensed> condensed_;
+
+  // Of a symmetric border: its order of elimination and what it is.
+  std::vector<int> place_, begin_;
+  int yielding_ = 0;  ///< so many rows feel a compliance
+  std::vector<double> least_;
+  linalg::SymmetricFactor symmetric_;
+  // Of any other, chains perhaps included.
+  Eigen::MatrixXd K_;
+  std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
+
+  Eigen::VectorXd scale_;  ///< D: D K D has entries near one
+  Eigen::VectorXd diagonal_, largest_, y_, left_, own_, seen_;
+  std::vector<double> ordered_;
+  RightSide rest_;
+  CoupledSolution correction_;
 };
 
 CoupledSolution solve_direct(const CoupledProblem& problem);

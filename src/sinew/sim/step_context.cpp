@@ -1,0 +1,33 @@
+#include "sinew/sim/step_context.hpp"
+
+namespace sinew {
+
+void StepContext::set(const State& from, const Command& wanted, double duration) {
+  start = from;
+  h = duration;
+  rate = model.scene.analysis == Analysis::dynamic ? 1.0 / duration : 0.0;
+  command = wanted;
+  gravity = model.scene.gravity;
+  first_guess = false;
+  displacement.clear();
+  for (const auto& [name, frame] : model.scene.frames)
+    displacement.push_back(frame_displacement(frame, start.time + h));
+  solids.resize(start.solids.size());
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    solids[i].x = start.solids[i].x;
+    solids[i].v = start.solids[i].v;
+    solids[i].rate = rate;
+  }
+  bases.clear();
+  for (const RodModel& rod : model.rods) bases.push_back(compose(moved(rod.frame), rod.base));
+  cable_bases.clear();
+  for (const CableModel& cable : model.cables) cable_bases.push_back(compose(moved(cable.frame), cable.base));
+}
+
+StepContext make_context(const Model& model, const State& start, const Command& command, double h) {
+  StepContext context(model);
+  context.set(start, command, h);
+  return context;
+}
+
+}  // namespace sinew
