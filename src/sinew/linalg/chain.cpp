@@ -8,19 +8,22 @@
 namespace sinew::linalg {
 
 Chain make_chain(const std::vector<int>& sizes, bool symmetric) {
+  std::vector<int> first = {0};
+  for (const int size : sizes) first.push_back(first.back() + size);
   Chain chain;
-  chain.first.push_back(0);
+  make_chain(first, symmetric, chain);
+  return chain;
+}
+
+void make_chain(const std::vector<int>& first, bool symmetric, Chain& chain) {
+  chain.first = first;
   int largest = 0;
-  for (const int size : sizes) {
-    chain.first.push_back(chain.first.back() + size);
-    largest = std::max(largest, size);
-  }
+  for (int k = 0; k < chain.links(); ++k) largest = std::max(largest, chain.size(k));
   const int n = chain.coordinates();
   chain.T.setZero(6, n);
   chain.V.setZero(6, n);
-  if (!symmetric) chain.U.setZero(6, n);
+  chain.U.setZero(6, symmetric ? 0 : n);
   chain.D.setZero(largest, n);
-  return chain;
 }
 
 Eigen::MatrixXd dense(const Chain& chain) {

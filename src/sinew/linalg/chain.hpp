@@ -41,6 +41,8 @@ struct Chain {
 
 /// All zeros, for links of the given sizes.
 Chain make_chain(const std::vector<int>& sizes, bool symmetric);
+/// The same in the memory of an earlier one, for links that begin at `first`.
+void make_chain(const std::vector<int>& first, bool symmetric, Chain& chain);
 
 /// The matrix written out, for tests and for the solver of last resort.
 Eigen::MatrixXd dense(const Chain& chain);

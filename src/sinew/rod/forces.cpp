@@ -211,18 +211,31 @@ void Walk::meet_loads(int i, int k, bool all) {
   const double begin = section.steps[static_cast<std::size_t>(k - shape_.first_step[i])].begin;
   while (left_ > 0 && (loads_[left_ - 1].s >= begin || all)) {
     // All loads at one abscissa together.
-    const double s = loads_[left_ - 1].s;
-    branch_in(shape_, i, k, s, branch_);
+    const PointLoad& last = loads_[left_ - 1];
+    const double s = last.s;
+    const bool slides = last.slide >= 0;
+    const Mat3* R = &branch_.R;
+    const Vec3* p = &branch_.p;
+    std::span<const Piece> pieces;
+    const Weights* weights = &branch_.weights.value;
+    if (last.station >= 0) {
+      const Configuration::StationFrame& station = shape_.stations[last.station];
+      R = &station.R;
+      p = &station.p;
+      weights = &rod_.stations[last.station].weights;
+      pieces = {&shape_.station_pieces[station.piece], static_cast<std::size_t>(weights->rows())};
+    } else {
+      branch_in(shape_, i, k, s, branch_);
+      pieces = branch_.pieces;
+    }
     Beyond here;
-    const bool slides = loads_[left_ - 1].slide >= 0;
     bool jump = false;
     do {
       const PointLoad& load = loads_[--left_];
-      here.add(branch_.p + branch_.R * load.offset - shape_.origin, load);
+      here.add(*p + *R * load.offset - shape_.origin, load);
       jump |= !load.spread;
     } while (left_ > 0 && loads_[left_ - 1].s == s && !slides && loads_[left_ - 1].slide < 0);  // each slide by itself
-    const PartialWeights& weights = branch_.weights;
-    const Crossing<M> crossing = cross<M>(branch_.pieces, i, here, weights.value, slides ? &weights : nullptr);
+    const Crossing<M> crossing = cross<M>(pieces, i, here, *weights, slides ? &branch_.weights : nullptr);
     add(i, k, crossing);
     if (slides) {
       Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
@@ -231,9 +244,9 @@ void Walk::meet_loads(int i, int k, bool all) {
       slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
       slide.second = crossing.second;
     }
-    if (jump) balance(s, branch_.R, branch_.p);
+    if (jump) balance(s, *R, *p);
     beyond_.add(here);
-    if (jump) balance(s, branch_.R, branch_.p);
+    if (jump) balance(s, *R, *p);
   }
 }
 
@@ -305,7 +318,7 @@ void Walk::add(int i, int k, const Crossing<M>& crossing) {
 /// The base's own coordinates: each turns and moves all that come after it.
 void Walk::add_base() {
   const auto nb = shape_.base.cols();
-  equations_.r.head(nb) += shape_.base.transpose() * beyond_.wrench();
+  equations_.r.head(nb).noalias() += shape_.base.transpose().lazyProduct(beyond_.wrench());
   const Mat6 K = beyond_.K(), U = beyond_.U();
   for (Eigen::Index i = 0; i < nb; ++i) {
     for (Eigen::Index j = i; j < nb; ++j) {
@@ -324,17 +337,20 @@ bool conservative(std::span<const PointLoad> loads) {
 }
 
 Equations make_equations(const Configuration& shape, bool symmetric, int slides) {
-  const Rod& rod = *shape.rod;
-  std::vector<int> sizes;
-  for (const Section& section : rod.sections) sizes.push_back(static_cast<int>(section.modes.size()));
   Equations equations;
+  make_equations(shape, symmetric, slides, equations);
+  return equations;
+}
+
+void make_equations(const Configuration& shape, bool symmetric, int slides, Equations& equations) {
+  const Rod& rod = *shape.rod;
   equations.r.setZero(rod.coordinates());
-  equations.chain = linalg::make_chain(sizes, symmetric);
+  linalg::make_chain(rod.first, symmetric, equations.chain);
   equations.chain.T = shape.twists;
   equations.base.setZero(rod.base_coordinates(), rod.base_coordinates());
   equations.slides.resize(static_cast<std::size_t>(slides));
+  equations.internal.clear();
   equations.internal.reserve(static_cast<std::size_t>(rod.count()) + 1);
-  return equations;
 }
 
 void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations) {

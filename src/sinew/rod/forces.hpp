@@ -18,6 +18,7 @@ struct PointLoad {
   bool follower = false;
   bool bends = true;    ///< false: the force has no part in the tangent (a predictor's)
   bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
+  int station = -1;     ///< at this one of the rod's, which the configuration then knows
   int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
 };
 
@@ -45,6 +46,8 @@ struct Equations {
 
 /// All zeros. Follower forces and moments make the tangent unsymmetric.
 Equations make_equations(const Configuration& shape, bool symmetric, int slides = 0);
+/// The same in the memory of earlier ones.
+void make_equations(const Configuration& shape, bool symmetric, int slides, Equations& equations);
 bool conservative(std::span<const PointLoad> loads);
 
 /// With X_i(q) the loaded points and J_i their Jacobians, adds

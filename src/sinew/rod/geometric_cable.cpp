@@ -5,8 +5,16 @@
 namespace sinew::rod {
 
 CableLength cable_length(const GeometricCable& cable, const Placement& base, const Eigen::VectorXd& z) {
+  CableLength length;
+  cable_length(cable, base, z, length);
+  return length;
+}
+
+void cable_length(const GeometricCable& cable, const Placement& base, const Eigen::VectorXd& z, CableLength& length) {
   const int n = cable.coordinates();
-  CableLength length{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+  length.value = 0.0;
+  length.gradient.setZero(n);
+  length.hessian.setZero(n, n);
   const double rounding = cable.rounding;
   const Vec3 axis = base.R.col(0);
   for (int i = 0; i < cable.points; ++i) {
@@ -31,7 +39,6 @@ CableLength cable_length(const GeometricCable& cable, const Placement& base, con
       length.hessian.block<3, 3>(from, to) -= H;
     }
   }
-  return length;
 }
 
 }  // namespace sinew::rod

@@ -21,8 +21,11 @@ struct GeometricCable {
 struct CableLength {
   double value = 0.0;
   Eigen::VectorXd gradient;
-  Eigen::MatrixXd hessian;
+  Eigen::MatrixXd hessian;  ///< zero beyond `kCableBand` off its diagonal: only neighbours share a segment
 };
+inline constexpr int kCableBand = 5;
 CableLength cable_length(const GeometricCable& cable, const Placement& base, const Eigen::VectorXd& z);
+/// The same in the memory of an earlier one.
+void cable_length(const GeometricCable& cable, const Placement& base, const Eigen::VectorXd& z, CableLength& length);
 
 }  // namespace sinew::rod

@@ -169,14 +169,29 @@ Eigen::Matrix3Xd mass_positions(const Configuration& shape) {
   return positions;
 }
 
+void add_stations(Configuration& shape) {
+  shape.stations.clear();
+  shape.station_pieces.clear();
+  for (const Station& station : shape.rod->stations) {
+    const Configuration::StepStart& start = shape.steps[shape.first_step[station.section] + station.step];
+    Configuration::StationFrame& own = shape.stations.emplace_back(
+        Configuration::StationFrame{start.R, start.p, static_cast<int>(shape.station_pieces.size())});
+    walk(station.weights, shape.strains[station.section], own.R, own.p, shape.station_pieces);
+  }
+}
+
 void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions) {
-  const std::vector<MassPoint>& masses = shape.rod->masses;
-  positions.resize(3, static_cast<Eigen::Index>(masses.size()));
-  Branch at;
-  double s = -1.0;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    if (masses[i].s != s) at = branch(shape, s = masses[i].s);  // several stand at each abscissa
-    positions.col(static_cast<Eigen::Index>(i)) = at.p + at.R * masses[i].offset;
+  const Rod& rod = *shape.rod;
+  positions.resize(3, static_cast<Eigen::Index>(rod.masses.size()));
+  Pieces pieces;
+  for (const Station& station : rod.stations) {
+    const Configuration::StepStart& start = shape.steps[shape.first_step[station.section] + station.step];
+    Mat3 R = start.R;
+    Vec3 p = start.p;
+    pieces.clear();
+    walk(station.weights, shape.strains[station.section], R, p, pieces);
+    for (int i = station.first_mass; i < station.first_mass + station.masses; ++i)
+      positions.col(i) = p + R * rod.masses[static_cast<std::size_t>(i)].offset;
   }
 }
 

@@ -73,6 +73,13 @@ struct Configuration {
   };
   std::vector<StepStart> steps;
   std::vector<Piece> pieces;
+  struct StationFrame {
+    Mat3 R;
+    Vec3 p;
+    int piece;  ///< first of the exponentials from the start of the step
+  };
+  std::vector<StationFrame> stations;  ///< of the mass points, once `add_stations` has been asked for them
+  std::vector<Piece> station_pieces;
   Matrix6X base;    ///< twists of the base's coordinates
   Matrix6X twists;  ///< of the strain coordinates, as felt beyond their section
 };
@@ -108,6 +115,9 @@ CurvePoint curve_point(const Configuration& shape, double s);
 
 /// Position of the material point at abscissa s, offset in the cross-section's frame.
 Vec3 position(const Configuration& shape, double s, const Vec3& offset = Vec3::Zero());
+
+/// Fills in the frames at the mass points.
+void add_stations(Configuration& shape);
 
 /// Where the mass points are, 3 x count [m].
 Eigen::Matrix3Xd mass_positions(const Configuration& shape);

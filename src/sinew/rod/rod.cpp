@@ -61,6 +61,26 @@ void add_masses(const Section& section, const Profile& profile, std::vector<Mass
   });
 }
 
+std::vector<Station> stations_of(const std::vector<Section>& sections, const std::vector<MassPoint>& masses) {
+  std::vector<Station> stations;
+  int section = 0, step = 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const double s = masses[i].s;
+    if (!stations.empty() && stations.back().s == s) {
+      ++stations.back().masses;
+      continue;
+    }
+    const auto at = [&]() -> const Section& { return sections[static_cast<std::size_t>(section)]; };
+    for (; s >= at().end && section + 1 < static_cast<int>(sections.size()); ++section) step = 0;
+    const std::vector<Step>& steps = at().steps;
+    while (step + 1 < static_cast<int>(steps.size()) && s >= steps[static_cast<std::size_t>(step)].end) ++step;
+    const double from = steps[static_cast<std::size_t>(step)].begin;
+    stations.push_back({s, section, step, static_cast<int>(i), 1,
+                        partial_weights(at().begin, at().end, degree_of(at()), from, s).value});
+  }
+  return stations;
+}
+
 }  // namespace
 
 Rod make_rod(const Discretisation& discretisation, const Profile& profile) {
@@ -79,6 +99,7 @@ Rod make_rod(const Discretisation& discretisation, const Profile& profile) {
     add_masses(section, profile, rod.masses);
     rod.first.push_back(rod.first.back() + static_cast<int>(section.modes.size()));
   }
+  rod.stations = stations_of(rod.sections, rod.masses);
   return rod;
 }
 

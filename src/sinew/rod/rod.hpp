@@ -64,11 +64,20 @@ struct MassPoint {
   double mass = 0.0;           ///< [kg]
 };
 
+/// An abscissa with mass points: what is constant of the exponentials from the start of its step to it.
+struct Station {
+  double s = 0.0;             ///< [m]
+  int section = 0, step = 0;  ///< step: of the section
+  int first_mass = 0, masses = 0;
+  Weights weights;
+};
+
 struct Rod {
   std::vector<Section> sections;
   std::vector<int> first;         ///< first strain coordinate of each section, and the number of all at the end
   std::vector<BaseMotion> base;   ///< first in q; translations before turns
   std::vector<MassPoint> masses;  ///< sorted by s; empty for a massless rod
+  std::vector<Station> stations;  ///< of the mass points
   Profile profile;                ///< what it is made of along its length
 
   int count() const { return static_cast<int>(sections.size()); }

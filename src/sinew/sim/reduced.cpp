@@ -49,10 +49,14 @@ void add_cable(const StepContext& context, const State& iterate, int number, Red
   const CableModel& model = context.model.cables[number];
   const Eigen::VectorXd& z = iterate.cables[number].z;
   solve::CoupledProblem& problem = reduced.problem;
-  const rod::CableLength length = rod::cable_length(model.cable, context.cable_bases[number], z);
+  rod::CableLength& length = reduced.cables[number];
+  rod::cable_length(model.cable, context.cable_bases[number], z, length);
   const double tension = iterate.lambda[model.length_row];
   const int n = model.cable.coordinates();
-  problem.B.add(model.unknown, model.unknown, tension * length.hessian);
+  for (int j = 0; j < n; ++j) {
+    for (int i = std::max(0, j - rod::kCableBand); i <= std::min(n - 1, j + rod::kCableBand); ++i)
+      problem.B.add(model.unknown + i, model.unknown + j, tension * length.hessian(i, j));
+  }
   problem.r.segment(model.unknown, n) = tension * length.gradient;
   problem.G.add(model.length_row, model.unknown, length.gradient.transpose());
   problem.c[model.length_row] = model.cable.length - length.value;
@@ -112,6 +116,8 @@ void linearize(const StepContext& context, const State& iterate, Reduced& reduce
   problem.c.setZero(model.rows);
   problem.chains.resize(model.rods.size());
   reduced.internal.resize(model.rods.size());
+  reduced.rods.resize(model.rods.size());
+  reduced.cables.resize(model.cables.size());
   reduced.largest = reduced.scale = reduced.violation = 0.0;
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     RodRows rod(context, iterate, static_cast<int>(i), reduced);

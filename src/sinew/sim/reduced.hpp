@@ -3,17 +3,30 @@
 #pragma once
 
 #include "sinew/rod/forces.hpp"
+#include "sinew/rod/geometric_cable.hpp"
 #include "sinew/sim/step_context.hpp"
 #include "sinew/solve/direct.hpp"
 
 namespace sinew {
+
+/// What one rod's equations are put together from; memory of the last time.
+struct RodParts {
+  rod::Configuration shape;
+  std::vector<rod::PointLoad> loads, masses, sorted;
+  std::vector<linalg::Attachment> attachments;
+  std::vector<int> border, order;  ///< of attachments: what each belongs to; sorted by link
+  std::vector<int> slides;         ///< unknown of each
+  rod::Equations equations;
+};
 
 /// Rods at an iterate: the coupled problem, but for the volumes' compliance and free motion. With rows c(z, q, x) = 0
 /// the multipliers stand as L = E - lambda . c, so G = -dc/d(z, q), r += G^T lambda, B -= lambda . c''.
 struct Reduced {
   solve::CoupledProblem problem;                    ///< its volumes are left as they are
   std::vector<std::vector<rod::Balance>> internal;  ///< of each rod
-  double largest = 0.0;                             ///< [N] largest unbalanced generalised force, by its lever arm
+  std::vector<RodParts> rods;
+  std::vector<rod::CableLength> cables;
+  double largest = 0.0;    ///< [N] largest unbalanced generalised force, by its lever arm
   double scale = 0.0;      ///< [N] what residuals are measured against: the largest of elastic, sliding and motor
                            ///< forces, and of the sums of inertia and weight of a rod
   double violation = 0.0;  ///< [m] largest violation of a row

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <numeric>
 
 namespace sinew {
 
@@ -12,48 +13,65 @@ double lever(const rod::Rod& rod, const rod::Section& section, const rod::Mode& 
   return section.length() * (mode.strain < 3 ? rod.length() : 1.0);
 }
 
+/// Stable, in place, for lists that are short or nearly sorted.
+template <class T, class Earlier>
+void sort_few(std::vector<T>& list, const Earlier& earlier) {
+  for (auto at = list.begin(); at != list.end(); ++at)
+    std::rotate(std::upper_bound(list.begin(), at, *at, earlier), at, at + 1);
+}
+
 }  // namespace
 
 RodRows::RodRows(const StepContext& context, const State& iterate, int number, Reduced& reduced)
-    : context_(context),
-      iterate_(iterate),
-      number_(number),
-      reduced_(reduced),
-      shape_(
-          rod::configure(context.model.rods[number].rod, base_of(context, iterate, number), iterate.rods[number].q)) {}
+    : context_(context), iterate_(iterate), number_(number), reduced_(reduced), own_(reduced.rods[number]) {
+  rod::configure(context.model.rods[number].rod, base_of(context, iterate, number), iterate.rods[number].q, own_.shape);
+  rod::add_stations(own_.shape);
+  own_.loads.clear();
+  own_.masses.clear();
+  own_.attachments.clear();
+  own_.border.clear();
+  own_.slides.clear();
+}
 
 void RodRows::slide(double s, const Vec3& force, int unknown) {
-  rod::PointLoad own{s, Vec3::Zero(), force};
-  own.slide = static_cast<int>(slides_.size());
-  loads_.push_back(own);
-  slides_.push_back(unknown);
+  rod::PointLoad load{s, Vec3::Zero(), force};
+  load.slide = static_cast<int>(own_.slides.size());
+  own_.loads.push_back(load);
+  own_.slides.push_back(unknown);
 }
 
 void RodRows::attach(int border, const rod::CurvePoint& point, const Vec3& offset, const Vec3& f) {
-  linalg::Attachment own;
-  own.link = point.section;
-  own.g << (point.position + point.R * offset - shape_.origin).cross(f), f;
-  own.b = point.twists.transpose() * own.g;
-  attachments_.emplace_back(std::move(own), border);
+  linalg::Attachment& attachment = own_.attachments.emplace_back();
+  attachment.link = point.section;
+  attachment.g << (point.position + point.R * offset - own_.shape.origin).cross(f), f;
+  attachment.b.noalias() = point.twists.transpose().lazyProduct(attachment.g);
+  own_.border.push_back(border);
 }
 
 void RodRows::add_masses() {
   // Inertia of the mass points by backward Euler on their positions, and their weight.
-  const rod::Rod& rod = *shape_.rod;
+  const rod::Rod& rod = *own_.shape.rod;
   const RodState& start = context_.start.rods[number_];
   const double rate = context_.rate;
   double acting = 0.0;  // inertia and weight each by themselves: in free fall they cancel
-  const Eigen::Matrix3Xd positions = rod::mass_positions(shape_);
-  for (std::size_t i = 0; i < rod.masses.size(); ++i) {
-    const rod::MassPoint& mass = rod.masses[i];
-    const auto column = static_cast<Eigen::Index>(i);
-    const Vec3 acceleration =
-        ((positions.col(column) - start.masses.col(column)) * rate - start.velocity.col(column)) * rate;
-    rod::PointLoad own{mass.s, mass.offset, mass.mass * (acceleration - context_.gravity), mass.mass * rate * rate};
-    own.bends = !context_.first_guess;
-    own.spread = true;
-    load(own);
-    acting += mass.mass * (acceleration.norm() + context_.gravity.norm());
+  const double weight = context_.gravity.norm();
+  for (std::size_t k = 0; k < rod.stations.size(); ++k) {
+    const rod::Station& station = rod.stations[k];
+    const rod::Configuration::StationFrame& frame = own_.shape.stations[k];
+    for (int i = station.first_mass; i < station.first_mass + station.masses; ++i) {
+      const rod::MassPoint& mass = rod.masses[static_cast<std::size_t>(i)];
+      const Vec3 position = frame.p + frame.R * mass.offset;
+      const Vec3 acceleration = ((position - start.masses.col(i)) * rate - start.velocity.col(i)) * rate;
+      rod::PointLoad& load = own_.masses.emplace_back();
+      load.s = mass.s;
+      load.offset = mass.offset;
+      load.force = mass.mass * (acceleration - context_.gravity);
+      load.weight = mass.mass * rate * rate;
+      load.bends = !context_.first_guess;
+      load.spread = true;
+      load.station = static_cast<int>(k);
+      acting += mass.mass * (acceleration.norm() + weight);
+    }
   }
   reduced_.scale = std::max(reduced_.scale, acting);
 }
@@ -66,20 +84,21 @@ void RodRows::add_forces() {
     const double factor = context_.command.loads[i];
     double acting = 0.0;
     for (const RodLoadModel::At& at : own.at) {
-      const rod::Mat3 R = own.follower ? rod::branch(shape_, at.s).R : rod::Mat3(rod::Mat3::Identity());
+      const rod::Mat3 R = own.follower ? rod::branch(own_.shape, at.s).R : rod::Mat3(rod::Mat3::Identity());
       rod::PointLoad point{at.s, Vec3::Zero(), R * (-factor * at.weight * own.force)};
       point.moment = R * (-factor * at.weight * own.moment);
       point.follower = own.follower;
       point.spread = !own.concentrated();
       load(point);
-      acting += point.force.norm() + point.moment.norm() / shape_.rod->length();
+      acting += point.force.norm() + point.moment.norm() / own_.shape.rod->length();
     }
     reduced_.scale = std::max(reduced_.scale, acting);
   }
 }
 
-void RodRows::add_tendons(rod::Equations& equations, solve::ChainPart& part) {
-  const rod::Rod& rod = *shape_.rod;
+void RodRows::add_tendons(solve::ChainPart& part) {
+  rod::Equations& equations = own_.equations;
+  const rod::Rod& rod = *own_.shape.rod;
   const Eigen::VectorXd& q = iterate_.rods[number_].q;
   for (std::size_t i = 0; i < context_.model.actuators.size(); ++i) {
     const ActuatorModel& actuator = context_.model.actuators[i];
@@ -107,65 +126,73 @@ void RodRows::add_tendons(rod::Equations& equations, solve::ChainPart& part) {
   }
 }
 
-void RodRows::measure(const rod::Equations& equations) {
-  const rod::Rod& rod = *shape_.rod;
+void RodRows::measure() {
+  const rod::Rod& rod = *own_.shape.rod;
   const int nb = rod.base_coordinates();
   const Eigen::VectorXd& q = iterate_.rods[number_].q;
   for (int i = 0; i < rod.count(); ++i) {
     const rod::Section& section = rod.sections[i];
-    const Eigen::VectorXd elastic = section.stiffness * rod.of_section(q, i);
+    linalg::Vector<Eigen::Dynamic> elastic;
+    elastic.noalias() = section.stiffness.lazyProduct(rod.of_section(q, i));
     for (std::size_t c = 0; c < section.modes.size(); ++c) {
       const auto at = static_cast<Eigen::Index>(c);
       const double arm = lever(rod, section, section.modes[c]);
-      reduced_.largest = std::max(reduced_.largest, std::abs(equations.r[nb + rod.first[i] + at]) / arm);
+      reduced_.largest = std::max(reduced_.largest, std::abs(own_.equations.r[nb + rod.first[i] + at]) / arm);
       reduced_.scale = std::max(reduced_.scale, std::abs(elastic[at]) / arm);
     }
   }
 }
 
 void RodRows::finish() {
-  const rod::Rod& rod = *shape_.rod;
+  const rod::Rod& rod = *own_.shape.rod;
   const RodModel& model = context_.model.rods[number_];
   const int nb = rod.base_coordinates();
-  const auto earlier = [](const rod::PointLoad& a, const rod::PointLoad& b) { return a.s < b.s; };
   add_forces();
   for (const ActuatorModel& actuator : context_.model.actuators) {
     if (actuator.line.rod != number_ || !actuator.tendon) continue;
     for (const double end : {actuator.tendon->from, actuator.tendon->to}) load({end, Vec3::Zero(), Vec3::Zero()});
   }
-  std::stable_sort(loads_.begin(), loads_.end(), earlier);
-  const auto sorted = static_cast<std::ptrdiff_t>(loads_.size());
-  loads_.reserve(loads_.size() + rod.masses.size());
-  add_masses();  // most of them, and sorted already
-  std::inplace_merge(loads_.begin(), loads_.begin() + sorted, loads_.end(), earlier);
-  rod::Equations equations = rod::make_equations(shape_, rod::conservative(loads_), static_cast<int>(slides_.size()));
-  rod::add_loads(shape_, loads_, equations);
+  // Mass points are most of all loads, and sorted already.
+  const auto earlier = [](const rod::PointLoad& a, const rod::PointLoad& b) { return a.s < b.s; };
+  sort_few(own_.loads, earlier);
+  add_masses();
+  own_.sorted.resize(own_.loads.size() + own_.masses.size());
+  std::merge(own_.loads.begin(), own_.loads.end(), own_.masses.begin(), own_.masses.end(), own_.sorted.begin(),
+             earlier);
+  rod::Equations& equations = own_.equations;
+  rod::make_equations(own_.shape, rod::conservative(own_.sorted), static_cast<int>(own_.slides.size()), equations);
+  rod::add_loads(own_.shape, own_.sorted, equations);
   rod::add_elasticity(rod, iterate_.rods[number_].q, context_.start.rods[number_].q, context_.rate, equations);
-  for (std::size_t i = 0; i < slides_.size(); ++i) {
-    problem().B.add(slides_[i], slides_[i], equations.slides[i].second);
-    attachments_.emplace_back(equations.slides[i].attachment, slides_[i]);
+  for (std::size_t i = 0; i < own_.slides.size(); ++i) {
+    problem().B.add(own_.slides[i], own_.slides[i], equations.slides[i].second);
+    own_.attachments.push_back(equations.slides[i].attachment);
+    own_.border.push_back(own_.slides[i]);
   }
-  std::stable_sort(attachments_.begin(), attachments_.end(),
-                   [](const auto& a, const auto& b) { return a.first.link < b.first.link; });
 
   solve::ChainPart& part = problem().chains[number_];
-  part.attachments.clear();
-  part.at.clear();
-  part.whole_at.clear();
-  part.base = shape_.base;
+  part.base = own_.shape.base;
   part.first_base = model.unknown;
+  part.whole_at.clear();
   part.whole.resize(rod.strain_coordinates(), 0);
-  add_tendons(equations, part);
-  measure(equations);
-  for (auto& [attachment, border] : attachments_) {
-    part.attachments.push_back(std::move(attachment));
-    part.at.push_back(border);
+  add_tendons(part);
+  measure();
+  own_.order.resize(own_.attachments.size());
+  std::iota(own_.order.begin(), own_.order.end(), 0);
+  std::sort(own_.order.begin(), own_.order.end(), [this](int a, int b) {
+    const int one = own_.attachments[a].link, other = own_.attachments[b].link;
+    return one < other || (one == other && a < b);
+  });
+  part.attachments.resize(own_.order.size());
+  part.at.resize(own_.order.size());
+  for (std::size_t i = 0; i < own_.order.size(); ++i) {
+    part.attachments[i] = own_.attachments[own_.order[i]];
+    part.at[i] = own_.border[own_.order[i]];
   }
   part.r = equations.r.tail(rod.strain_coordinates());
-  part.chain = std::move(equations.chain);
+  std::swap(part.chain, equations.chain);
   problem().r.segment(model.unknown, nb) += equations.r.head(nb);
   problem().B.add(model.unknown, model.unknown, equations.base);
-  reduced_.internal[number_] = std::move(equations.internal);
+  std::swap(reduced_.internal[number_], equations.internal);
 }
 
 }  // namespace sinew

@@ -11,14 +11,14 @@ class RodRows {
   RodRows(const StepContext& context, const State& iterate, int number, Reduced& reduced);
 
   int number() const { return number_; }
-  const rod::Configuration& shape() const { return shape_; }
+  const rod::Configuration& shape() const { return own_.shape; }
   Reduced& reduced() { return reduced_; }
   solve::CoupledProblem& problem() { return reduced_.problem; }
   const StepContext& context() const { return context_; }
   const State& iterate() const { return iterate_; }
 
   /// A force on a material point; loads may come in any order.
-  void load(const rod::PointLoad& load) { loads_.push_back(load); }
+  void load(const rod::PointLoad& load) { own_.loads.push_back(load); }
   /// An abscissa that is the unknown z, under the force of its load: f . gamma_qs and f . gamma_ss.
   void slide(double s, const Vec3& force, int unknown);
   /// Couples a border entry (an unknown z, or row(i)) to the strains and the base by f . dX/dq of the point at
@@ -32,17 +32,14 @@ class RodRows {
  private:
   void add_masses();
   void add_forces();
-  void add_tendons(rod::Equations& equations, solve::ChainPart& part);
-  void measure(const rod::Equations& equations);
+  void add_tendons(solve::ChainPart& part);
+  void measure();
 
   const StepContext& context_;
   const State& iterate_;
   int number_;
   Reduced& reduced_;
-  rod::Configuration shape_;
-  std::vector<rod::PointLoad> loads_;
-  std::vector<std::pair<linalg::Attachment, int>> attachments_;
-  std::vector<int> slides_;  ///< unknown of each
+  RodParts& own_;
 };
 
 /// Axes of what holds a tie, at an iterate, as columns `TieModel::length` long.

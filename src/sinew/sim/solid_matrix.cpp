@@ -1,6 +1,7 @@
 #include "sinew/sim/solid_matrix.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -212,31 +213,31 @@ Eigen::MatrixXd pressure_skew(const SolidModel& model, const SolidLoadModel& loa
 void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x, solid::Tangent kind,
               double* values) {
   const solid::Body& body = model.body;
-  solid::assemble_tangent(
-      body, start, x, kind,
-      [&](int cell, const solid::ElementMatrix& own) {
-        const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(cell)];
-        const std::span<const int> nodes = body.cells[cell].nodes();
-        each_pair(nodes, [&](std::size_t a, std::size_t b) {
-          const auto block = own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-          add_block(body, nodes[a], nodes[b], *place++, block, values);
-        });
-      },
-      [&](const solid::TetBatch& batch, const solid::TetStiffness& own, unsigned left_out) {
-        for (int i = 0; i < batch.count; ++i) {
-          if (left_out >> i & 1U) continue;
-          const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(batch.cell[i])];
-          int number = 0;
-          for (int a = 0; a < 4; ++a) {
-            for (int b = 0; b <= a; ++b) {
-              const solid::Eight(&block)[9] = own.block[number++];
-              add_block(
-                  body, batch.node[a][i], batch.node[b][i], *place++,
-                  [&block, i](int row, int column) { return block[row + 3 * column][i]; }, values);
-            }
-          }
+  const auto insert = [&](int cell, const solid::ElementMatrix& own) {
+    const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(cell)];
+    const std::span<const int> nodes = body.cells[cell].nodes();
+    each_pair(nodes, [&](std::size_t a, std::size_t b) {
+      const auto block = own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+      add_block(body, nodes[a], nodes[b], *place++, block, values);
+    });
+  };
+  const auto insert_batch = [&](const solid::TetBatch& batch, const solid::TetStiffness& own, unsigned left_out) {
+    for (int i = 0; i < batch.count; ++i) {
+      if (left_out >> i & 1U) continue;
+      const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(batch.cell[i])];
+      int number = 0;
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b <= a; ++b) {
+          const solid::Eight(&block)[9] = own.block[number++];
+          add_block(
+              body, batch.node[a][i], batch.node[b][i], *place++,
+              [&block, i](int row, int column) { return block[row + 3 * column][i]; }, values);
         }
-      });
+      }
+    }
+  };
+  // By reference: functions as large as these would ask for memory.
+  solid::assemble_tangent(body, start, x, kind, std::cref(insert), std::cref(insert_batch));
   const double factor = solid::mass_factor(body, start.rate);
   const BlockPlace* place = model.mass_places.data();
   each_mass(body, [&](int row, int column, double mass) {

@@ -119,7 +119,10 @@ void each_tied(const ChainPart& part, const Visit& visit) {
   for (const int i : part.whole_at) visit(i);
 }
 
-double largest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; }
+template <class Vector>
+double largest(const Eigen::MatrixBase<Vector>& v) {
+  return v.size() > 0 ? v.template lpNorm<Eigen::Infinity>() : 0.0;
+}
 
 /// to += from.
 void add_solution(const CoupledSolution& from, CoupledSolution& to) {
@@ -172,6 +175,11 @@ void CoupledFactor::factor(const CoupledProblem& problem) {
   lu_.reset();
   factors_.resize(problem.chains.size());
   condensed_.resize(problem.chains.size());
+  rooms_.resize(problem.chains.size());
+  correction_.dz.resize(problem.r.size());
+  correction_.dlambda.resize(problem.c.size());
+  correction_.dq.resize(problem.chains.size());
+  for (std::size_t n = 0; n < problem.chains.size(); ++n) correction_.dq[n].resize(problem.chains[n].r.size());
   bool chains = true, symmetric = true;
   for (std::size_t n = 0; n < problem.chains.size() && chains; ++n) {
     const ChainPart& part = problem.chains[n];
@@ -246,7 +254,6 @@ void CoupledFactor::weigh() {
     for (const int i : part.at) most = i >= nz ? std::max(most, diagonal_[i]) : most;
   }
   least_.assign(static_cast<std::size_t>(size), 0.0);
-  std::fill_n(least_.begin(), yielding_, -kVanished * most);
   scale_.setOnes(size);
   for (int sweep = 0; sweep < 4; ++sweep) {
     largest_ = diagonal_.cwiseProduct(scale_.cwiseProduct(scale_));
@@ -259,6 +266,8 @@ void CoupledFactor::weigh() {
     for (const auto& [row, column, value] : problem.B) meet(row, column, value);
     for (int i = 0; i < size; ++i) scale_[i] /= largest_[i] > 0.0 ? std::sqrt(largest_[i]) : 1.0;
   }
+  std::fill_n(least_.begin(), yielding_, -kVanished * most);
+  for (int i = 0; i < nz; ++i) least_[place_[i]] = kVanished / (scale_[i] * scale_[i]);
 }
 
 bool CoupledFactor::factor_symmetric() {
@@ -270,19 +279,15 @@ bool CoupledFactor::factor_symmetric() {
   fill(border);
   weigh();
   if (!scale_.allFinite() || !symmetric_.factor(begin_, least_)) return false;
-  // What is left of a pivot must not be rounding of the others of its kind.
-  const int nz = unknowns_of(problem);
-  const auto sound = [&](int first, int end) {
-    double least = INFINITY, most = 0.0;
-    for (int i = first; i < end; ++i) {
-      if (place_[i] < yielding_) continue;
-      const double pivot = std::abs(symmetric_.pivot(place_[i])) * scale_[i] * scale_[i];
-      least = std::min(least, pivot);
-      most = std::max(most, pivot);
-    }
-    return most == 0.0 || least > 1e-14 * most;
-  };
-  if (!sound(0, nz) || !sound(nz, size)) return false;
+  // What is left of the pivots of rows that depend on each other is rounding.
+  double smallest = INFINITY, most = 0.0;
+  for (int i = unknowns_of(problem); i < size; ++i) {
+    if (place_[i] < yielding_) continue;
+    const double pivot = std::abs(symmetric_.pivot(place_[i])) * scale_[i] * scale_[i];
+    smallest = std::min(smallest, pivot);
+    most = std::max(most, pivot);
+  }
+  if (most > 0.0 && !(smallest > 1e-14 * most)) return false;
   kind_ = Kind::symmetric;
   joined_ = false;
   return true;
@@ -369,8 +374,9 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
     x = -right.chains[n];
     factors_[n].solve(x, Vec6::Zero(), &base);
     base_of(part, y).noalias() -= part.base.transpose().lazyProduct(base);
-    linalg::along(part.chain, part.attachments, x, seen_);
-    for (std::size_t i = 0; i < part.at.size(); ++i) y[part.at[i]] -= seen_[static_cast<Eigen::Index>(i)];
+    Eigen::VectorXd& seen = rooms_[n].attached;
+    linalg::along(part.chain, part.attachments, x, seen);
+    for (std::size_t i = 0; i < part.at.size(); ++i) y[part.at[i]] -= seen[static_cast<Eigen::Index>(i)];
     for (std::size_t f = 0; f < part.whole_at.size(); ++f)
       y[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
   }
@@ -402,7 +408,7 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
       at += part.r.size();
       continue;
     }
-    pull_of(part, y, own_, x);
+    pull_of(part, y, rooms_[n].attached, x);
     x = -right.chains[n] - x;
     Vec6 twist;
     twist.noalias() = part.base.lazyProduct(base_of(part, y));
@@ -429,11 +435,9 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
   for (const auto& [row, column, value] : problem.W) left[nz + row] += value * lambda[column];
   for (const VolumePart& volume : problem.volumes) {
     const auto count = static_cast<Eigen::Index>(volume.at.size());
-    own_.resize(count);
-    seen_.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) own_[i] = lambda[volume.at[i]];
-    seen_.noalias() = volume.W * own_;
-    for (Eigen::Index i = 0; i < count; ++i) left[nz + volume.at[i]] += seen_[i];
+    forces_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) forces_[i] = lambda[volume.at[i]];
+    for (Eigen::Index i = 0; i < count; ++i) left[nz + volume.at[i]] += volume.W.row(i).dot(forces_);
   }
   double relative = 0.0;
   rest.chains.resize(problem.chains.size());
@@ -445,16 +449,17 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
     wrench.noalias() = part.chain.V.lazyProduct(x);
     wrench += total_wrench(part, y_);
     base_of(part, left).noalias() -= part.base.transpose().lazyProduct(wrench);
-    linalg::along(part.chain, part.attachments, x, seen_);
+    auto& [attached, answer] = rooms_[n];
+    linalg::along(part.chain, part.attachments, x, attached);
     for (std::size_t i = 0; i < part.at.size(); ++i)
-      left[part.at[i]] -= seen_[static_cast<Eigen::Index>(i)] + part.attachments[i].g.dot(twist);
+      left[part.at[i]] -= attached[static_cast<Eigen::Index>(i)] + part.attachments[i].g.dot(twist);
     for (std::size_t f = 0; f < part.whole_at.size(); ++f)
       left[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
     Eigen::VectorXd& own = rest.chains[n];  // stands with the sign of r
-    pull_of(part, y_, own_, own);
-    linalg::multiply(part.chain, x, twist, seen_);
-    const double size = std::max({largest(right.chains[n]), largest(own), largest(seen_)});
-    own += right.chains[n] + seen_;
+    pull_of(part, y_, attached, own);
+    linalg::multiply(part.chain, x, twist, answer);
+    const double size = std::max({largest(right.chains[n]), largest(own), largest(answer)});
+    own += right.chains[n] + answer;
     if (size > 0.0) relative = std::max(relative, largest(own) / size);
     if (!x.allFinite()) relative = INFINITY;
   }

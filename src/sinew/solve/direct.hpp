@@ -133,7 +133,11 @@ class CoupledFactor {
   std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
 
   Eigen::VectorXd scale_;  ///< D: D K D has entries near one
-  Eigen::VectorXd diagonal_, largest_, y_, left_, own_, seen_;
+  Eigen::VectorXd diagonal_, largest_, y_, left_, forces_;
+  struct ChainRoom {
+    Eigen::VectorXd attached, answer;
+  };
+  std::vector<ChainRoom> rooms_;
   std::vector<double> ordered_;
   RightSide rest_;
   CoupledSolution correction_;

@@ -1,0 +1,140 @@
+// Steps ask for no memory after the first ones. Counted where the C library hands it out, so that nothing is missed;
+// a program of its own, since it stands in for malloc. Sanitizers do so, too, and leave this out.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wrestrict"  // GCC 12 sees overlaps in std::string where malloc is not its own
+#endif
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "sinew/io/mesh_file.hpp"
+#include "support/robots.hpp"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SINEW_COUNTS_MEMORY
+#endif
+
+#ifdef SINEW_COUNTS_MEMORY
+namespace {
+bool counting = false;
+long counted = 0;
+
+void count() {
+  if (counting) ++counted;
+}
+}  // namespace
+
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  count();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* old, std::size_t size) {
+  count();
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+}
+
+namespace sinew::test {
+namespace {
+
+/// What five steps ask for after three, in pieces.
+long pieces(const Scene& scene, const MeshReader& meshes, Evaluation evaluation) {
+  const Model model = build(scene, meshes);
+  Workspace workspace = make_workspace(model);
+  State state = initial_state(model);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(accepted(advance(model, workspace, state).status));
+  counted = 0;
+  for (int i = 0; i < 5; ++i) {
+    counting = true;
+    const StepReport report = advance(model, workspace, state, evaluation);
+    counting = false;
+    EXPECT_TRUE(accepted(report.status)) << to_string(report.status);
+    EXPECT_FALSE(report.rotated);
+  }
+  return counted;
+}
+
+TEST(Memory, IsCounted) {
+  counted = 0;
+  counting = true;
+  void* volatile own = std::malloc(8);
+  delete new int;
+  counting = false;
+  std::free(own);
+  EXPECT_EQ(counted, 2);
+}
+
+TEST(Memory, SolidsWithCablesAskForNone) {
+  for (const Cable kind : {Cable::cosserat, Cable::geometric}) {
+    for (const int iterations : {1, 2, 0}) {
+      Scene scene = cable_block();
+      scene.rods[0].second.cable = kind;
+      scene.newton.iterations = iterations;
+      EXPECT_EQ(pieces(scene, read_block, Evaluation::full), 0) << iterations;
+      if (iterations > 0) EXPECT_EQ(pieces(scene, read_block, Evaluation::motion), 0) << iterations;
+    }
+  }
+}
+
+TEST(Memory, RobotsAskForNone) {
+  const std::filesystem::path meshes = SINEW_SHARED_MESHES;
+  EXPECT_EQ(pieces(block(), block_of(300), Evaluation::motion), 0);
+  if (!std::filesystem::exists(meshes / "finger.vtk")) GTEST_SKIP() << "no finger.vtk in " << meshes;
+  EXPECT_EQ(pieces(finger(meshes, 6, 7, Cable::cosserat), io::read_mesh, Evaluation::motion), 0);
+  EXPECT_EQ(pieces(finger(meshes, 1, 15, Cable::geometric), io::read_mesh, Evaluation::motion), 0);
+  EXPECT_EQ(pieces(trunk(meshes, 10), io::read_mesh, Evaluation::full), 0);
+}
+
+TEST(Memory, SolidsOfAllKindsAskForNone) {
+  for (const solid::Kind kind : {solid::Kind::tet4, solid::Kind::tet10, solid::Kind::hex8}) {
+    for (const solid::Law& law :
+         {solid::Law(solid::corotational(1e5, 0.3)), solid::Law(solid::neo_hookean(1e5, 0.3))}) {
+      Scene scene;
+      scene.time = {0.01, 1.0};
+      Solid body;
+      body.mesh = "block";
+      body.material.law = law;
+      body.density = 1000.0;
+      body.rayleigh = {0.1, 0.02};
+      body.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitX()}});
+      scene.solids.emplace_back("body", body);
+      const auto mesh = [&](const auto&) { return block_mesh(3, 2, 2, Vec3(0.05, 0.01, 0.01), kind); };
+      EXPECT_EQ(pieces(scene, mesh, Evaluation::full), 0);
+    }
+  }
+}
+
+TEST(Memory, RodsAloneAskForNone) {
+  for (const int order : {0, 2}) {
+    Scene scene;
+    scene.time = {0.01, 1.0};
+    Rod rod;
+    rod.path = {Vec3::Zero(), Vec3(0.3, 0, 0)};
+    rod.sections = 5;
+    rod.order = {order, order, order, 0, 0, 0};
+    rod.section = Circle{1e-3};
+    rod.material = {1e8, 0.4, 1100.0};
+    scene.rods.emplace_back("rod", rod);
+    EXPECT_EQ(pieces(scene, read_block, Evaluation::full), 0) << order;
+  }
+}
+
+}  // namespace
+}  // namespace sinew::test
+#endif
