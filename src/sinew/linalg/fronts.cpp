@@ -160,9 +160,8 @@ int row_of(const Fronts& plan, const Front& front, int position) {
   return front.columns + static_cast<int>(std::lower_bound(below.begin(), below.end(), position) - below.begin());
 }
 
-/// Who hangs on whom, and which rows of the parent the rows below are.
+/// Who hangs on whom.
 void add_descent(Fronts& plan) {
-  plan.into.resize(plan.below.size());
   std::vector<std::vector<int>> children(plan.fronts.size());
   for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
     Front& front = plan.fronts[s];
@@ -171,8 +170,32 @@ void add_descent(Fronts& plan) {
     plan.children.insert(plan.children.end(), children[s].begin(), children[s].end());
     if (front.parent < 0) continue;
     children[front.parent].push_back(static_cast<int>(s));
-    for (int i = 0; i < front.below; ++i)
-      plan.into[front.index + i] = row_of(plan, plan.fronts[front.parent], plan.below[front.index + i]);
+  }
+}
+
+/// Which rows of the parent a front's rows below and border rows are.
+void add_runs(Fronts& plan) {
+  for (Front& front : plan.fronts) {
+    front.first_run = plan.runs.size();
+    if (front.parent < 0) continue;
+    const Front& parent = plan.fronts[front.parent];
+    const auto put = [&](int row, int into) {
+      if (plan.runs.size() > front.first_run) {
+        Run& last = plan.runs.back();
+        if (last.row + last.length == row && last.into + last.length == into) {
+          ++last.length;
+          return;
+        }
+      }
+      plan.runs.push_back({row, into, 1});
+    };
+    for (int i = 0; i < front.below; ++i) {
+      const int into = row_of(plan, parent, plan.below[front.index + i]);
+      if (into < parent.columns) ++front.to_panel;
+      put(i, into);
+    }
+    for (int i = 0; i < front.borders; ++i) put(front.below + i, parent.rows() + front.border - parent.border + i);
+    front.run_count = static_cast<int>(plan.runs.size() - front.first_run);
   }
 }
 
@@ -322,6 +345,7 @@ Fronts plan_fronts(const Compressed& lower, const Compressed& border) {
       std::fill_n(front_of.begin() + plan.fronts[s].first, plan.fronts[s].columns, static_cast<int>(s));
     add_descent(plan);
     add_border(border, front_of, plan);
+    add_runs(plan);
     if (!best.fronts.empty() && best.work() <= plan.work()) continue;
     add_places(plan);
     best = std::move(plan);

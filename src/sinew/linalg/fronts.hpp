@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/linalg/kernels.hpp"
 #include "sinew/linalg/ordering.hpp"
 
 namespace sinew::linalg {
@@ -20,8 +21,11 @@ struct Front {
   int parent = -1;              ///< the front its update goes to
   int stride = 0, update_stride = 0;  ///< [doubles] from one column to the next, of panel and update
   std::size_t panel = 0, update = 0;  ///< where they begin
-  std::size_t index = 0;              ///< where its lists begin in `below` and `into`
-  std::size_t first_child = 0;        ///< where its children begin in `children`
+  std::size_t index = 0;              ///< where its rows begin in `below`
+  std::size_t first_run = 0;          ///< and in `runs`
+  int run_count = 0;
+  int to_panel = 0;             ///< so many of its rows below are columns of its parent's panel
+  std::size_t first_child = 0;  ///< where its children begin in `children`
   int child_count = 0;
 
   int rows() const { return columns + below; }
@@ -33,15 +37,12 @@ struct Fronts {
   std::vector<int> border;    ///< of each border row in the order in which they are kept
   std::vector<Front> fronts;  ///< children before parents, each one's descendants just before it
   std::vector<int> below;     ///< positions of the rows below, ascending
-  std::vector<int> into;      ///< and which row of the parent each one is
+  std::vector<Run> runs;      ///< which rows of the parent they and the border rows are
   std::vector<int> children;
   std::size_t panels = 0, updates = 0;  ///< [doubles] that all panels take, and all updates alive at one time
 
   std::span<const int> rows_below(const Front& front) const {
     return {below.data() + front.index, static_cast<std::size_t>(front.below)};
-  }
-  std::span<const int> rows_in_parent(const Front& front) const {
-    return {into.data() + front.index, static_cast<std::size_t>(front.below)};
   }
   std::span<const int> children_of(const Front& front) const {
     return {children.data() + front.first_child, static_cast<std::size_t>(front.child_count)};

@@ -8,6 +8,11 @@ namespace sinew::linalg {
 inline constexpr int kLanes = 8;
 constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 
+/// Rows of one matrix that are rows of another, one after the other in both.
+struct Run {
+  int row = 0, into = 0, length = 0;
+};
+
 /// One set of kernels, for matrices by columns; a stride is the way from one column to the next.
 struct Kernels {
   const char* name;
@@ -25,6 +30,11 @@ struct Kernels {
   /// beside the diagonal anything is left above it. A is height x depth, `signs` the diagonal of S.
   void (*update)(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
                  const double* signs, bool fresh);
+
+  /// Adds columns first .. before end of a lower triangle to columns of another matrix, whose rows and columns are
+  /// given by runs; `shift` is taken off both.
+  void (*add)(const double* from, int from_stride, int first, int end, const Run* runs, int count, double* to,
+              int to_stride, int shift);
 
   /// y <- P^-1 y and x <- P^-T x with the square on top of a factored panel.
   void (*solve)(const double* panel, int stride, int columns, double* y);

@@ -90,21 +90,45 @@ void strip(double* C, int stride, const Product& product, int top, int height, b
   tiles.template operator()<1>();
 }
 
-/// C <- C - A S A^T as in Kernels::update.
+/// Rows and columns of A that are worked on at a time, so that they stay in the second cache.
+constexpr int kChunk = 240, kDepth = 256;
+static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
+
+/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`.
 template <bool turned>
-void rank_update(double* C, int C_stride, const Product& product, int height, int columns, bool fresh) {
+void update_rows(double* C, int C_stride, const Product& product, int top, int height, int columns, bool fresh) {
   int j = 0;
   const auto strips = [&]<int across>() {
-    for (; j + across <= columns; j += across) {
+    for (; j + across <= columns && j < height; j += across) {
       Product own = product;
       own.B += j;
-      strip<across, turned>(C + static_cast<long>(j) * C_stride, C_stride, own, j / kWidth * kWidth, height, fresh);
+      const int first = j / kWidth * kWidth;
+      strip<across, turned>(C + static_cast<long>(j) * C_stride, C_stride, own, first > top ? first : top, height,
+                            fresh);
     }
   };
   strips.template operator()<kAcross>();
   if constexpr (kAcross > 4) strips.template operator()<4>();
   if constexpr (kAcross > 2) strips.template operator()<2>();
   strips.template operator()<1>();
+}
+
+template <bool turned>
+void rank_update(double* C, int C_stride, const Product& product, int height, int columns, bool fresh) {
+  if (product.begin || height <= 2 * kChunk) {
+    update_rows<turned>(C, C_stride, product, 0, height, columns, fresh);
+    return;
+  }
+  for (int k = 0; k < product.depth; k += kDepth) {
+    Product own = product;
+    own.A += static_cast<long>(k) * own.stride;
+    own.B = own.A;
+    own.signs += k;
+    own.depth = product.depth - k < kDepth ? product.depth - k : kDepth;
+    for (int top = 0; top < height; top += kChunk)
+      update_rows<turned>(C, C_stride, own, top, top + kChunk < height ? top + kChunk : height, columns,
+                          fresh && k == 0);
+  }
 }
 
 void update(double* C, int C_stride, Product product, int height, int columns, bool fresh) {
@@ -169,7 +193,8 @@ struct Profile {
   const double* least = nullptr;
 };
 
-bool factor(double* panel, int stride, int columns, int height, const Profile& profile, double* pivots, double* signs) {
+bool factor_narrow(double* panel, int stride, int columns, int height, const Profile& profile, double* pivots,
+                   double* signs) {
   static_assert(kBlock == kLanes);
   for (int first = 0; first < columns; first += kBlock) {
     const int count = columns - first < kBlock ? columns - first : kBlock;
@@ -221,12 +246,48 @@ bool factor(double* panel, int stride, int columns, int height, const Profile& p
 }
 
 bool factor(double* panel, int stride, int columns, int height, double* pivots, double* signs) {
-  return factor(panel, stride, columns, height, Profile{}, pivots, signs);
+  constexpr int kColumns = 96;  // at a time
+  for (int first = 0; first < columns; first += kColumns) {
+    const int end = first + kColumns < columns ? first + kColumns : columns;
+    double* own = panel + static_cast<long>(first) * (stride + 1);
+    if (!factor_narrow(own, stride, end - first, height - first, Profile{}, pivots + first, signs + first))
+      return false;
+    if (end < columns)
+      update(panel + static_cast<long>(end) * (stride + 1), stride, own + (end - first), stride, height - end,
+             columns - end, end - first, signs + first, false);
+  }
+  return true;
 }
 
 bool factor_profile(double* panel, int stride, int columns, const int* begin, const double* least, double* pivots,
                     double* signs) {
-  return factor(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
+  return factor_narrow(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
+}
+
+/// to <- to + from, with registers of ever smaller size.
+template <int width>
+void add_run(const double* from, double* to, int length) {
+  using Part [[gnu::vector_size(8 * width), gnu::aligned(8), gnu::may_alias]] = double;
+  int i = 0;
+  for (; i + width <= length; i += width) *reinterpret_cast<Part*>(to + i) += *reinterpret_cast<const Part*>(from + i);
+  if constexpr (width > 2) {
+    add_run<width / 2>(from + i, to + i, length - i);
+  } else {
+    if (i < length) to[i] += from[i];
+  }
+}
+
+void add(const double* from, int from_stride, int first, int end, const Run* runs, int count, double* to, int to_stride,
+         int shift) {
+  int at = 0;  // the run of column j
+  for (int j = first; j < end; ++j) {
+    while (runs[at].row + runs[at].length <= j) ++at;
+    const double* own = from + static_cast<long>(j) * from_stride;
+    const int into = runs[at].into + j - runs[at].row;
+    double* column = to + static_cast<long>(into - shift) * to_stride - shift;
+    add_run<kWidth>(own + j, column + into, runs[at].row + runs[at].length - j);
+    for (int k = at + 1; k < count; ++k) add_run<kWidth>(own + runs[k].row, column + runs[k].into, runs[k].length);
+  }
 }
 
 void multiply(const double* A, int stride, int height, int columns, const double* x, double* y) {
@@ -301,7 +362,7 @@ void solve_transposed(const double* panel, int stride, int columns, double* x) {
 
 }  // namespace
 
-const Kernels SINEW_KERNELS{SINEW_NAME, factor,           factor_profile, update,
-                            solve,      solve_transposed, multiply,       multiply_transposed};
+const Kernels SINEW_KERNELS{SINEW_NAME,       factor,   factor_profile,     update, add, solve,
+                            solve_transposed, multiply, multiply_transposed};
 
 }  // namespace sinew::linalg

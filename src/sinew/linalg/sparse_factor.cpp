@@ -12,22 +12,6 @@ namespace {
 /// Below this part of what is rounded nothing is left but rounding.
 constexpr double kVanished = 1e-13;
 
-/// Adds a child's update to its parent: to its panel, and to its update.
-void add_update(const Front& child, std::span<const int> into, const double* from, const Front& parent, double* panel,
-                double* update) {
-  const int below = child.below, borders = child.borders, columns = parent.columns;
-  for (int j = 0; j < below; ++j) {
-    const double* column = from + static_cast<std::ptrdiff_t>(j) * child.update_stride;
-    const bool in_panel = into[j] < columns;
-    const int shift = in_panel ? 0 : columns;  // rows of the update begin after the panel's own
-    double* to = in_panel ? panel + static_cast<std::ptrdiff_t>(into[j]) * parent.stride
-                          : update + static_cast<std::ptrdiff_t>(into[j] - columns) * parent.update_stride;
-    for (int i = j; i < below; ++i) to[into[i] - shift] += column[i];
-    double* border = to + parent.rows() - shift + child.border - parent.border;
-    for (int i = 0; i < borders; ++i) border[i] += column[below + i];
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const Fronts> SparseFactor::make_plan(const Matrix& pattern, const Rows& border) {
@@ -107,16 +91,19 @@ bool SparseFactor::factor_fronts() {
     double* panel = panels_.data() + front.panel;
     double* update = updates_.data() + front.update;
     const std::span<const int> children = plan_->children_of(front);
-    if (!children.empty()) std::fill_n(update, static_cast<std::size_t>(front.update_stride) * front.below, 0.0);
-    for (const int c : children) {
-      const Front& own = plan_->fronts[c];
-      add_update(own, plan_->rows_in_parent(own), updates_.data() + own.update, front, panel, update);
-    }
+    const auto add = [&](const Front& own, int first, int end, double* to, int stride, int shift) {
+      kernels_->add(updates_.data() + own.update, own.update_stride, first, end, plan_->runs.data() + own.first_run,
+                    own.run_count, to, stride, shift);
+    };
+    for (const int c : children) add(plan_->fronts[c], 0, plan_->fronts[c].to_panel, panel, front.stride, 0);
     double* signs = signs_.data() + front.first;
     if (!kernels_->factor(panel, front.stride, front.columns, front.height(), pivots_.data() + front.first, signs))
       return false;
     kernels_->update(update, front.update_stride, panel + front.columns, front.stride, front.below + front.borders,
-                     front.below, front.columns, signs, children.empty());
+                     front.below, front.columns, signs, true);
+    for (const int c : children)
+      add(plan_->fronts[c], plan_->fronts[c].to_panel, plan_->fronts[c].below, update, front.update_stride,
+          front.columns);
     kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
                      static_cast<int>(minus_W_.outerStride()), panel + front.rows(), front.stride, front.borders,
                      front.borders, front.columns, signs, false);
