@@ -37,14 +37,14 @@ double now() {
 
 struct Measured {
   int cells = 0, unknowns = 0, rows = 0;
-  double step = std::numeric_limits<double>::infinity(), reference = step;  ///< [ms], smallest
-  StageTimes stages;                                                        ///< [s] of the fastest step
+  double step = std::numeric_limits<double>::infinity(), two = step, reference = step;  ///< [ms], smallest
+  StageTimes stages;                                                                    ///< [s] of the fastest step
 };
 
 /// Whole steps from the same few states and factorisations of their matrix, in turns.
 Measured measure(const Model& model, int turns) {
   Measured result;
-  Workspace workspace = make_workspace(model);
+  Workspace workspace = make_workspace(model), shared = make_workspace(model, 2);
   State state = initial_state(model);
   for (int i = 0; i < 10; ++i) {  // away from rest
     if (!accepted(advance(model, workspace, state).status)) throw std::runtime_error("the run stopped");
@@ -70,22 +70,32 @@ Measured measure(const Model& model, int turns) {
     result.step = std::min(result.step, middle - start);
     result.reference = std::min(result.reference, end - middle);
   }
+  for (int i = 0; i < turns; ++i) {
+    again = state;
+    const double before = now();
+    advance(model, shared, again, Evaluation::motion);
+    result.two = std::min(result.two, now() - before);
+  }
   return result;
 }
 
 void print(const std::string& name, const Measured& own) {
   const StageTimes& t = own.stages;
-  fmt::print("| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n",
-             name, own.cells, own.unknowns, own.rows, own.step, own.reference, own.step / own.reference, 1e3 * t.forces,
-             1e3 * t.assembly, 1e3 * t.factor, 1e3 * t.compliance, 1e3 * t.rods, 1e3 * t.solve);
+  fmt::print(
+      "| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.3f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | "
+      "{:.3f} |\n",
+      name, own.cells, own.unknowns, own.rows, own.step, own.reference, own.step / own.reference, own.two,
+      own.step / own.two, 1e3 * t.forces, 1e3 * t.assembly, 1e3 * t.factor, 1e3 * t.compliance, 1e3 * t.rods,
+      1e3 * t.solve);
   std::fflush(stdout);
 }
 
 int run_all(const std::filesystem::path& meshes, const std::string& wanted, int turns) {
   fmt::print("Registers: {}. Smallest of {} turns, ms.\n\n", linalg::kernels().name, turns);
   fmt::print(
-      "| scene | cells | unknowns | rows | step | R | step / R | forces | assembly | factor | W | rods | border |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| scene | cells | unknowns | rows | step | R | step / R | 2 threads | faster | forces | assembly | factor | W | "
+      "rods | border |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const auto go = [&](const std::string& name, const auto& model, int count) {
     if (name.find(wanted) == std::string::npos) return;
     print(name, measure(model(), count));

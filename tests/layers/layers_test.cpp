@@ -29,12 +29,13 @@ using Layers = std::map<std::string, std::set<std::string>>;
 const Layers kMayInclude = {
     {"error", {}},
     {"lie", {}},
-    {"linalg", {}},
+    {"threads", {}},
+    {"linalg", {"threads"}},
     {"rod", {"lie", "linalg"}},
     {"solid", {"lie", "linalg"}},
     {"constraint", {"lie", "rod", "solid", "linalg"}},
-    {"solve", {"linalg"}},
-    {"sim", {"error", "lie", "linalg", "rod", "solid", "constraint", "solve"}},
+    {"solve", {"linalg", "threads"}},
+    {"sim", {"error", "lie", "linalg", "rod", "solid", "constraint", "solve", "threads"}},
     {"io", {"error", "solid", "sim"}},
 };
 

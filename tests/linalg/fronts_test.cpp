@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sinew/linalg/sparse_factor.hpp"
@@ -66,6 +67,29 @@ Bar random_bar(int length, int rows, double shift, unsigned seed) {
       if (draw() % 2 == 0) entries.emplace_back(r, u, number(draw));
     }
   }
+  bar.H.setFromTriplets(entries.begin(), entries.end());
+  return bar;
+}
+
+/// n x n x n nodes of three unknowns, each tied to its neighbours, and border rows of one unknown.
+Bar random_cube(int n, int rows) {
+  std::mt19937 draw(3);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n * n * n; ++i) {
+    const std::array<int, 3> place = {i / (n * n), i / n % n, i % n}, next = {i + n * n, i + n, i + 1};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      entries.emplace_back(3 * i + static_cast<int>(axis), 3 * i + static_cast<int>(axis), 24.0);
+      if (place[axis] + 1 == n) continue;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) entries.emplace_back(3 * next[axis] + a, 3 * i + b, number(draw));
+      }
+    }
+  }
+  Bar bar{Matrix(3 * n * n * n, 3 * n * n * n), Rows(rows, 3 * n * n * n)};
+  bar.A.setFromTriplets(entries.begin(), entries.end());
+  entries.clear();
+  for (int r = 0; r < rows; ++r) entries.emplace_back(r, static_cast<int>(draw() % bar.A.cols()), 1.0);
   bar.H.setFromTriplets(entries.begin(), entries.end());
   return bar;
 }
@@ -205,14 +229,88 @@ TEST(Fronts, UpdatesThatLiveAtOneTimeDoNotOverlap) {
   for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
     const Front& own = plan.fronts[s];
     all += end(own) - own.update;
-    EXPECT_LE(end(own), plan.updates);
+    EXPECT_LE(end(own), own.in_part ? plan.part_updates : plan.updates);
     for (std::size_t t = 0; t < s; ++t) {
       const Front& earlier = plan.fronts[t];
       if (earlier.parent < static_cast<int>(s) || earlier.below == 0 || own.below == 0) continue;
+      if (earlier.in_part != own.in_part) continue;
       EXPECT_TRUE(end(earlier) <= own.update || end(own) <= earlier.update) << t << " and " << s;
     }
   }
-  EXPECT_LT(plan.updates, all / 2);
+  EXPECT_LT(plan.updates + plan.part_updates, all / 2);
+}
+
+/// Roots of parts wait for their parents whatever the order of the parts.
+TEST(Fronts, UpdatesOfPartsDoNotOverlapThoseThatWait) {
+  const Fronts plan = plan_of(random_cube(8, 30));
+  std::vector<int> order;
+  for (const Fronts::Part& part : plan.parts) order.push_back(part.end - 1);
+  order.insert(order.end(), plan.top.begin(), plan.top.end());
+  const auto end = [](const Front& front) {
+    return front.update + static_cast<std::size_t>(front.update_stride) * static_cast<std::size_t>(front.below);
+  };
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Front& own = plan.fronts[static_cast<std::size_t>(order[k])];
+    for (std::size_t j = 0; j < k; ++j) {
+      const Front& earlier = plan.fronts[static_cast<std::size_t>(order[j])];
+      const bool gone = k >= plan.parts.size() && earlier.parent < order[k];
+      if (gone || earlier.below == 0 || own.below == 0) continue;
+      EXPECT_TRUE(end(earlier) <= own.update || end(own) <= earlier.update) << j << " and " << k;
+    }
+  }
+}
+
+TEST(Fronts, PartsAreSubtreesThatShareNothing) {
+  const Fronts plan = plan_of(random_cube(8, 30));
+  ASSERT_GT(plan.parts.size(), 4u);
+  std::vector<int> part(plan.fronts.size(), -1);
+  for (std::size_t p = 0; p < plan.parts.size(); ++p) {
+    for (int s = plan.parts[p].first; s < plan.parts[p].end; ++s) {
+      EXPECT_EQ(std::exchange(part[static_cast<std::size_t>(s)], static_cast<int>(p)), -1);
+    }
+  }
+  for (const int s : plan.top) EXPECT_EQ(part[static_cast<std::size_t>(s)], -1);
+  EXPECT_EQ(std::count(part.begin(), part.end(), -1), static_cast<std::ptrdiff_t>(plan.top.size()));
+  for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
+    const Front& own = plan.fronts[s];
+    EXPECT_EQ(own.in_part, part[s] >= 0 && static_cast<int>(s) + 1 < plan.parts[static_cast<std::size_t>(part[s])].end);
+    if (part[s] < 0) {
+      EXPECT_TRUE(own.parent < 0 || part[static_cast<std::size_t>(own.parent)] < 0);
+    } else if (own.parent >= 0 && part[static_cast<std::size_t>(own.parent)] != part[s]) {
+      EXPECT_EQ(part[static_cast<std::size_t>(own.parent)], -1);
+      EXPECT_EQ(static_cast<int>(s) + 1, plan.parts[static_cast<std::size_t>(part[s])].end);
+    }
+    for (std::size_t t = 0; t < s; ++t) {
+      const Front& other = plan.fronts[t];
+      if (part[s] < 0 || part[t] < 0 || part[s] == part[t]) continue;
+      EXPECT_TRUE(other.border + other.borders <= own.border || own.border + own.borders <= other.border);
+    }
+  }
+}
+
+TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
+  const auto [A, H] = random_cube(13, 60);  // with fronts whose updates are cut into strips
+  const auto plan = SparseFactor::make_plan(A, H);
+  EXPECT_GT(std::max_element(plan->fronts.begin(), plan->fronts.end(),
+                             [](const Front& a, const Front& b) { return a.columns < b.columns; })
+                ->columns,
+            300);
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(A.cols());
+  SparseFactor alone(plan);
+  ASSERT_TRUE(alone.factor(A, H));
+  const Eigen::VectorXd x = alone.solve(b);
+  Eigen::MatrixXd W, own;
+  alone.compliance(W);
+  for (const int size : {2, 3}) {
+    threads::Crew crew(size);
+    SparseFactor factor(plan);
+    for (int again = 0; again < 3; ++again) {
+      ASSERT_TRUE(factor.factor(A, H, crew));
+      factor.compliance(own);
+      EXPECT_EQ(own, W);
+      EXPECT_EQ(factor.solve(b), x);
+    }
+  }
 }
 
 TEST(Fronts, UnknownsOfABorderRowMustMeet) {

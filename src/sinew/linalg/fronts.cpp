@@ -279,19 +279,74 @@ std::size_t update_size(const Front& front) {
   return static_cast<std::size_t>(front.update_stride) * static_cast<std::size_t>(front.below);
 }
 
-/// Where panels and updates begin.
+double work_of(const Front& front) {
+  double sum = 0.0;
+  const double height = front.height();
+  for (int k = 0; k < front.columns; ++k) sum += 0.5 * (height - k) * (height - k);
+  return sum;
+}
+
+/// Cuts the tree below its heaviest fronts until no subtree has more than an eighth of the work.
+void add_parts(Fronts& plan) {
+  std::vector<double> work(plan.fronts.size());  // of subtrees
+  std::vector<int> first(plan.fronts.size());    // front of each
+  double all = 0.0;
+  std::vector<int> uncut;
+  for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
+    const Front& front = plan.fronts[s];
+    const std::span<const int> children = plan.children_of(front);
+    all += work_of(front);
+    work[s] += work_of(front);
+    first[s] = children.empty() ? static_cast<int>(s) : first[children.front()];
+    if (front.parent >= 0) {
+      work[front.parent] += work[s];
+    } else {
+      uncut.push_back(static_cast<int>(s));
+    }
+  }
+  const auto lighter = [&work](int a, int b) { return work[a] < work[b] || (work[a] == work[b] && a < b); };
+  std::make_heap(uncut.begin(), uncut.end(), lighter);
+  while (!uncut.empty() && work[uncut.front()] > all / 8.0) {
+    std::pop_heap(uncut.begin(), uncut.end(), lighter);
+    const int root = uncut.back();
+    uncut.pop_back();
+    plan.top.push_back(root);
+    for (const int child : plan.children_of(plan.fronts[root])) {
+      uncut.push_back(child);
+      std::push_heap(uncut.begin(), uncut.end(), lighter);
+    }
+  }
+  std::sort(plan.top.begin(), plan.top.end());
+  std::sort(uncut.begin(), uncut.end(), [&lighter](int a, int b) { return lighter(b, a); });
+  for (const int root : uncut) plan.parts.push_back({first[root], root + 1});
+}
+
+/// Where panels and updates begin. Parts can be done at one time: each in a room like that of any other, but for the
+/// updates of their roots, which wait for their parents.
 void add_places(Fronts& plan) {
-  Room room;
   for (Front& front : plan.fronts) {
     front.stride = whole_lanes(front.rows() + whole_lanes(front.borders));
     front.update_stride = whole_lanes(front.below + front.borders);
     front.panel = plan.panels;
     plan.panels += static_cast<std::size_t>(front.stride) * static_cast<std::size_t>(front.columns);
-    front.update = room.take(update_size(front));
-    for (const int child : plan.children_of(front))
-      room.give_back(plan.fronts[child].update, update_size(plan.fronts[child]));
   }
-  plan.updates = room.end();
+  Room shared;
+  const auto place = [&plan](Front& front, Room& own, Room& of_children) {
+    front.update = own.take(update_size(front));
+    for (const int child : plan.children_of(front))
+      of_children.give_back(plan.fronts[child].update, update_size(plan.fronts[child]));
+  };
+  for (const Fronts::Part& part : plan.parts) {
+    Room room;
+    for (int s = part.first; s + 1 < part.end; ++s) {
+      plan.fronts[s].in_part = true;
+      place(plan.fronts[s], room, room);
+    }
+    place(plan.fronts[part.end - 1], shared, room);
+    plan.part_updates = std::max(plan.part_updates, room.end());
+  }
+  for (const int s : plan.top) place(plan.fronts[s], shared, shared);
+  plan.updates = shared.end();
 }
 
 }  // namespace
@@ -316,10 +371,7 @@ std::size_t Fronts::border_entry(int row, int unknown) const {
 
 double Fronts::work() const {
   double sum = 0.0;
-  for (const Front& front : fronts) {
-    const double height = front.height();
-    for (int k = 0; k < front.columns; ++k) sum += 0.5 * (height - k) * (height - k);
-  }
+  for (const Front& front : fronts) sum += work_of(front);
   return sum;
 }
 
@@ -347,6 +399,7 @@ Fronts plan_fronts(const Compressed& lower, const Compressed& border) {
     add_border(border, front_of, plan);
     add_runs(plan);
     if (!best.fronts.empty() && best.work() <= plan.work()) continue;
+    add_parts(plan);
     add_places(plan);
     best = std::move(plan);
   }

@@ -20,7 +20,8 @@ struct Front {
   int border = 0, borders = 0;  ///< first border row that reaches it, and how many (sorted)
   int parent = -1;              ///< the front its update goes to
   int stride = 0, update_stride = 0;  ///< [doubles] from one column to the next, of panel and update
-  std::size_t panel = 0, update = 0;  ///< where they begin
+  std::size_t panel = 0, update = 0;  ///< where they begin; the latter in a room of its part's, or where all share one
+  bool in_part = false;               ///< below the root of a part
   std::size_t index = 0;              ///< where its rows begin in `below`
   std::size_t first_run = 0;          ///< and in `runs`
   int run_count = 0;
@@ -39,7 +40,16 @@ struct Fronts {
   std::vector<int> below;     ///< positions of the rows below, ascending
   std::vector<Run> runs;      ///< which rows of the parent they and the border rows are
   std::vector<int> children;
-  std::size_t panels = 0, updates = 0;  ///< [doubles] that all panels take, and all updates alive at one time
+  /// Subtrees that know nothing of each other, the heaviest first: fronts first .. before end, the last one their root.
+  /// `top`: the fronts above them, ascending. A choice by size alone.
+  struct Part {
+    int first = 0, end = 0;
+  };
+  std::vector<Part> parts;
+  std::vector<int> top;
+  /// [doubles] that all panels take, updates of `top` and of the roots of parts alive at one time, and those of any one
+  /// part.
+  std::size_t panels = 0, updates = 0, part_updates = 0;
 
   std::span<const int> rows_below(const Front& front) const {
     return {below.data() + front.index, static_cast<std::size_t>(front.below)};

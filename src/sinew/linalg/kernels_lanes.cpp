@@ -193,8 +193,8 @@ struct Profile {
   const double* least = nullptr;
 };
 
-bool factor_narrow(double* panel, int stride, int columns, int height, const Profile& profile, double* pivots,
-                   double* signs) {
+bool factor_panel(double* panel, int stride, int columns, int height, const Profile& profile, double* pivots,
+                  double* signs) {
   static_assert(kBlock == kLanes);
   for (int first = 0; first < columns; first += kBlock) {
     const int count = columns - first < kBlock ? columns - first : kBlock;
@@ -246,22 +246,12 @@ bool factor_narrow(double* panel, int stride, int columns, int height, const Pro
 }
 
 bool factor(double* panel, int stride, int columns, int height, double* pivots, double* signs) {
-  constexpr int kColumns = 96;  // at a time
-  for (int first = 0; first < columns; first += kColumns) {
-    const int end = first + kColumns < columns ? first + kColumns : columns;
-    double* own = panel + static_cast<long>(first) * (stride + 1);
-    if (!factor_narrow(own, stride, end - first, height - first, Profile{}, pivots + first, signs + first))
-      return false;
-    if (end < columns)
-      update(panel + static_cast<long>(end) * (stride + 1), stride, own + (end - first), stride, height - end,
-             columns - end, end - first, signs + first, false);
-  }
-  return true;
+  return factor_panel(panel, stride, columns, height, Profile{}, pivots, signs);
 }
 
 bool factor_profile(double* panel, int stride, int columns, const int* begin, const double* least, double* pivots,
                     double* signs) {
-  return factor_narrow(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
+  return factor_panel(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
 }
 
 /// to <- to + from, with registers of ever smaller size.

@@ -1,6 +1,8 @@
 #include "sinew/linalg/sparse_factor.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -59,7 +61,7 @@ SparseFactor::Matrix SparseFactor::assembled() const {
   return A;
 }
 
-bool SparseFactor::factor(const Matrix& A, const Rows& border) {
+bool SparseFactor::factor(const Matrix& A, const Rows& border, threads::Crew& crew) {
   if (A.cols() != size() || border.rows() != borders())
     throw std::invalid_argument("SparseFactor: a matrix of another pattern");
   clear();
@@ -71,44 +73,106 @@ bool SparseFactor::factor(const Matrix& A, const Rows& border) {
     for (Rows::InnerIterator at(border, k); at; ++at)
       panels_[plan_->border_entry(static_cast<int>(k), static_cast<int>(at.col()))] += at.value();
   }
-  return factor();
+  return factor(crew);
 }
 
-bool SparseFactor::factor() {
+bool SparseFactor::factor(threads::Crew& crew) {
   if (size() == 0) return true;
   for (const Front& front : plan_->fronts) {
     for (int j = 0; j < front.columns; ++j)
       diagonal_[front.first + j] = std::abs(panels_[front.panel + static_cast<std::size_t>(j) * (front.stride + 1)]);
   }
-  if (!factor_fronts()) return false;
+  if (!factor_fronts(crew)) return false;
   negative_ = static_cast<int>((pivots_.array() < 0.0).count());
   return pivots_.cwiseAbs().minCoeff() > kVanished * diagonal_.maxCoeff() || scaled_condition() * kVanished < 1.0;
 }
 
-bool SparseFactor::factor_fronts() {
+bool SparseFactor::factor_fronts(threads::Crew& crew) {
   minus_W_.setZero();
-  for (const Front& front : plan_->fronts) {
-    double* panel = panels_.data() + front.panel;
-    double* update = updates_.data() + front.update;
-    const std::span<const int> children = plan_->children_of(front);
-    const auto add = [&](const Front& own, int first, int end, double* to, int stride, int shift) {
-      kernels_->add(updates_.data() + own.update, own.update_stride, first, end, plan_->runs.data() + own.first_run,
-                    own.run_count, to, stride, shift);
-    };
-    for (const int c : children) add(plan_->fronts[c], 0, plan_->fronts[c].to_panel, panel, front.stride, 0);
-    double* signs = signs_.data() + front.first;
-    if (!kernels_->factor(panel, front.stride, front.columns, front.height(), pivots_.data() + front.first, signs))
-      return false;
-    kernels_->update(update, front.update_stride, panel + front.columns, front.stride, front.below + front.borders,
-                     front.below, front.columns, signs, true);
-    for (const int c : children)
-      add(plan_->fronts[c], plan_->fronts[c].to_panel, plan_->fronts[c].below, update, front.update_stride,
-          front.columns);
-    kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
-                     static_cast<int>(minus_W_.outerStride()), panel + front.rows(), front.stride, front.borders,
-                     front.borders, front.columns, signs, false);
+  while (rooms_.size() < std::min(static_cast<std::size_t>(crew.size()), plan_->parts.size()))
+    rooms_.emplace_back(plan_->part_updates + kLanes);
+  if (crew.size() == 1) {  // updates are added while they are in the caches
+    double* const room = rooms_.empty() ? nullptr : rooms_.front().data();
+    return std::all_of(plan_->fronts.begin(), plan_->fronts.end(),
+                       [&](const Front& front) { return factor_front(front, room, crew); });
   }
+  // No border row reaches two parts: each writes its own columns of W.
+  std::atomic<bool> ok = true;
+  std::atomic<unsigned> taken = 0;  // rooms, a bit each
+  crew.each(static_cast<int>(plan_->parts.size()), [&](int i) {
+    unsigned before = taken, own = 0;
+    do {
+      own = ~before & (before + 1);  // the lowest that is free
+    } while (!taken.compare_exchange_weak(before, before | own));
+    double* const room = rooms_[static_cast<std::size_t>(std::countr_zero(own))].data();
+    const Fronts::Part& part = plan_->parts[static_cast<std::size_t>(i)];
+    for (int s = part.first; s < part.end && ok; ++s) {
+      if (!factor_front(plan_->fronts[static_cast<std::size_t>(s)], room, threads::Crew::none())) ok = false;
+    }
+    taken &= ~own;
+  });
+  for (const int s : plan_->top) {
+    if (!ok || !factor_front(plan_->fronts[static_cast<std::size_t>(s)], nullptr, crew)) return false;
+  }
+  return ok;
+}
+
+bool SparseFactor::factor_front(const Front& front, double* room, threads::Crew& crew) {
+  constexpr int kColumns = 96;  // of a panel at a time
+  double* const panel = panels_.data() + front.panel;
+  const int height = front.height();
+  double* const signs = signs_.data() + front.first;
+  add_children(front, room, true, crew);
+  for (int first = 0; first < front.columns; first += kColumns) {
+    const int count = std::min(kColumns, front.columns - first), end = first + count;
+    double* const own = panel + static_cast<std::ptrdiff_t>(first) * (front.stride + 1);
+    if (!kernels_->factor(own, front.stride, count, height - first, pivots_.data() + front.first + first,
+                          signs + first))
+      return false;
+    if (end < front.columns)
+      update(crew, panel + static_cast<std::ptrdiff_t>(end) * (front.stride + 1), front.stride, own + count,
+             front.stride, height - end, front.columns - end, count, signs + first, false);
+  }
+  update(crew, update_of(front, room), front.update_stride, panel + front.columns, front.stride,
+         front.below + front.borders, front.below, front.columns, signs, true);
+  add_children(front, room, false, crew);
+  kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
+                   static_cast<int>(minus_W_.outerStride()), panel + front.rows(), front.stride, front.borders,
+                   front.borders, front.columns, signs, false);
   return true;
+}
+
+/// Kernels::update; much of it in strips of columns that several threads can take. By size alone: how columns go
+/// together decides how sums are rounded.
+void SparseFactor::update(threads::Crew& crew, double* C, int C_stride, const double* A, int A_stride, int height,
+                          int columns, int depth, const double* signs, bool fresh) {
+  constexpr int kStrip = 96;
+  constexpr double kWorthIt = 2e6;
+  if (static_cast<double>(height) * columns * depth < kWorthIt) {
+    kernels_->update(C, C_stride, A, A_stride, height, columns, depth, signs, fresh);
+    return;
+  }
+  crew.each((columns + kStrip - 1) / kStrip, [&](int i) {
+    const int first = kStrip * i;
+    kernels_->update(C + static_cast<std::ptrdiff_t>(first) * (C_stride + 1), C_stride, A + first, A_stride,
+                     height - first, std::min(kStrip, columns - first), depth, signs, fresh);
+  });
+}
+
+/// Adds the updates of a front's children to its panel, or to its own update.
+void SparseFactor::add_children(const Front& front, double* room, bool to_panel, threads::Crew& crew) {
+  constexpr int kStrip = 256;
+  for (const int c : plan_->children_of(front)) {
+    const Front& own = plan_->fronts[static_cast<std::size_t>(c)];
+    const int first = to_panel ? 0 : own.to_panel, end = to_panel ? own.to_panel : own.below;
+    crew.each((end - first + kStrip - 1) / kStrip, [&](int i) {
+      const int from = first + kStrip * i;
+      kernels_->add(update_of(own, room), own.update_stride, from, std::min(end, from + kStrip),
+                    plan_->runs.data() + own.first_run, own.run_count,
+                    to_panel ? panels_.data() + front.panel : update_of(front, room),
+                    to_panel ? front.stride : front.update_stride, to_panel ? 0 : front.columns);
+    });
+  }
 }
 
 /// Largest eigenvalue of Delta^(1/2) A^-1 Delta^(1/2), Delta the diagonal: how much of a solution is rounding, which

@@ -8,6 +8,7 @@
 
 #include "sinew/linalg/fronts.hpp"
 #include "sinew/linalg/kernels.hpp"
+#include "sinew/threads/crew.hpp"
 
 namespace sinew::linalg {
 
@@ -35,9 +36,10 @@ class SparseFactor {
   /// A as it has been put together, before it is factored.
   Matrix assembled() const;
   /// False if rounding is all that is left of a pivot, or it is not finite; solves are then meaningless.
-  bool factor();
+  /// The result is the same to the last bit, whatever the crew.
+  bool factor(threads::Crew& crew = threads::Crew::none());
   /// All of it, for matrices of the plan's patterns.
-  bool factor(const Matrix& A, const Rows& border = {});
+  bool factor(const Matrix& A, const Rows& border = {}, threads::Crew& crew = threads::Crew::none());
 
   int size() const { return static_cast<int>(plan_->place.size()); }
   int borders() const { return static_cast<int>(plan_->border.size()); }
@@ -64,13 +66,21 @@ class SparseFactor {
   void add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::Ref<Eigen::VectorXd> y) const;
 
  private:
-  bool factor_fronts();
+  bool factor_fronts(threads::Crew& crew);
+  bool factor_front(const Front& front, double* room, threads::Crew& crew);
+  double* update_of(const Front& front, double* room) {
+    return (front.in_part ? room : updates_.data()) + front.update;
+  }
+  void add_children(const Front& front, double* room, bool to_panel, threads::Crew& crew);
+  void update(threads::Crew& crew, double* C, int C_stride, const double* A, int A_stride, int height, int columns,
+              int depth, const double* signs, bool fresh);
   double scaled_condition() const;
 
   std::shared_ptr<const Fronts> plan_;
   const Kernels* kernels_;
   std::vector<double> panels_, updates_;
-  Eigen::VectorXd diagonal_;  ///< of A, its size
+  std::vector<std::vector<double>> rooms_;  ///< of parts that are done at one time
+  Eigen::VectorXd diagonal_;                ///< of A, its size
   Eigen::VectorXd pivots_, signs_;
   Eigen::MatrixXd minus_W_;  ///< -H A^-1 H^T below its diagonal, in the order of the plan
   std::size_t largest_ = 0;  ///< [doubles] that hold any front's unknowns

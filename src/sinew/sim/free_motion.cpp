@@ -61,7 +61,7 @@ void solid_forces(const StepContext& context, const State& iterate, int number, 
 }
 
 bool FreeMotion::factor(const StepContext& context, const State& iterate, int number, solid::Tangent kind,
-                        StageTimes& times, solve::VolumePart& volume) {
+                        threads::Crew& crew, StageTimes& times, solve::VolumePart& volume) {
   const SolidModel& model = context.model.solids[number];
   if (!factor_) factor_.emplace(model.fronts);
   {
@@ -82,7 +82,7 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   }
   {
     const Clock clock(times.factor);
-    if (!factor_->factor()) return false;
+    if (!factor_->factor(crew)) return false;
   }
   const Clock clock(times.compliance);
   volume.at.clear();

@@ -27,8 +27,8 @@ void solid_forces(const StepContext& context, const State& iterate, int number, 
 class FreeMotion {
  public:
   /// Puts A together and factors it; `volume` receives W. False where A cannot be factored.
-  bool factor(const StepContext& context, const State& iterate, int number, solid::Tangent kind, StageTimes& times,
-              solve::VolumePart& volume);
+  bool factor(const StepContext& context, const State& iterate, int number, solid::Tangent kind, threads::Crew& crew,
+              StageTimes& times, solve::VolumePart& volume);
   double stiffness() const { return factor_->largest_diagonal(); }  ///< [N/m] largest diagonal entry of A
   int negative() const { return factor_->negative(); }  ///< eigenvalues of A: 0 where the volume by itself is stable
 

@@ -8,26 +8,55 @@
 
 namespace sinew {
 
-void Linearization::evaluate(const StepContext& context, const State& iterate, StageTimes& times) {
+template <class OfSolid, class OfRods>
+void Linearization::beside(const OfSolid& of_solid, const OfRods& of_rods) {
+  const std::size_t solids = context_->model.solids.size();
+  spent_.assign(solids + 1, {});
+  crew_.each(static_cast<int>(solids) + 1, [&](int i) {
+    const auto number = static_cast<std::size_t>(i);
+    if (number < solids) {
+      of_solid(number, spent_[number]);
+    } else {
+      of_rods(spent_[number]);
+    }
+  });
+  for (const StageTimes& own : spent_) *times_ += own;
+}
+
+void Linearization::evaluate(const StepContext& context, const State& iterate, StageTimes& times,
+                             std::optional<solid::Tangent> then) {
   context_ = &context;
   iterate_ = &iterate;
   times_ = &times;
-  largest_ = scale_ = stiffness_ = 0.0;
   rotated_ = coupled_ = false;
-  negative_ = 0;
-  {
-    const Clock clock(times.forces);
-    forces_.resize(context.model.solids.size());
-    for (std::size_t i = 0; i < forces_.size(); ++i) {
-      solid_forces(context, iterate, static_cast<int>(i), forces_[i]);
-      largest_ = std::max(largest_, forces_[i].largest);
-      scale_ = std::max(scale_, forces_[i].scale);
-    }
+  ahead_ = then.has_value();
+  const std::size_t solids = context.model.solids.size();
+  forces_.resize(solids);
+  free_.resize(solids);
+  factored_.assign(solids, Factored::failed);
+  reduced_.problem.volumes.resize(solids);
+  beside(
+      [&](std::size_t i, StageTimes& own) {
+        {
+          const Clock clock(own.forces);
+          solid_forces(context, iterate, static_cast<int>(i), forces_[i]);
+        }
+        if (then) factor_solid(i, *then, own);
+      },
+      [&](StageTimes& own) {
+        {
+          const Clock clock(own.rods);
+          linearize(context, iterate, reduced_);
+        }
+        const Clock clock(own.solve);
+        if (then) factor_.eliminate_chains(reduced_.problem);
+      });
+  largest_ = reduced_.largest;
+  scale_ = reduced_.scale;
+  for (const SolidForces& own : forces_) {
+    largest_ = std::max(largest_, own.largest);
+    scale_ = std::max(scale_, own.scale);
   }
-  const Clock clock(times.rods);
-  linearize(context, iterate, reduced_);
-  largest_ = std::max(largest_, reduced_.largest);
-  scale_ = std::max(scale_, reduced_.scale);
 }
 
 bool Linearization::finite() const {
@@ -40,44 +69,53 @@ bool Linearization::finite() const {
 }
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
-  if (!factor_solids(kind, failed)) return false;
+  if (!ahead_) {
+    beside([&](std::size_t i, StageTimes& own) { factor_solid(i, kind, own); },
+           [&](StageTimes& own) {
+             const Clock clock(own.solve);
+             factor_.eliminate_chains(reduced_.problem);
+           });
+  }
+  if (!solids_factored(failed)) return false;
   couple();
   if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) return true;
   if (conservative() && negative_ + factor_.negative() <= context_->model.rows) return true;
   rotated_ = true;
-  if (!factor_solids(solid::Tangent::definite, failed)) return false;
+  beside([&](std::size_t i, StageTimes& own) { factor_solid(i, solid::Tangent::definite, own); }, [](StageTimes&) {});
+  if (!solids_factored(failed)) return false;
   couple();
   return true;
 }
 
-bool Linearization::factor_solids(solid::Tangent kind, std::string& failed) {
-  const std::vector<SolidModel>& solids = context_->model.solids;
-  free_.resize(solids.size());
-  reduced_.problem.volumes.resize(solids.size());
+void Linearization::factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times) {
+  const auto factored = [&](solid::Tangent wanted) {
+    return free_[number].factor(*context_, *iterate_, static_cast<int>(number), wanted, crew_, times,
+                                reduced_.problem.volumes[number]);
+  };
+  Factored& own = factored_[number];
+  own = factored(kind) ? Factored::as_told : Factored::failed;
+  if (own == Factored::failed && kind == solid::Tangent::exact && factored(solid::Tangent::definite))
+    own = Factored::definite;
+}
+
+bool Linearization::solids_factored(std::string& failed) {
   negative_ = 0;
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    FreeMotion& own = free_[i];
-    const auto factored = [&](solid::Tangent wanted) {
-      return own.factor(*context_, *iterate_, static_cast<int>(i), wanted, *times_, reduced_.problem.volumes[i]);
-    };
-    bool ok = factored(kind);
-    if (!ok && kind == solid::Tangent::exact) {
-      rotated_ = true;
-      ok = factored(solid::Tangent::definite);
-    }
-    if (!ok) {
-      failed = "solids." + solids[i].name;
+  stiffness_ = 0.0;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    if (factored_[i] == Factored::failed) {
+      failed = "solids." + context_->model.solids[i].name;
       return false;
     }
-    stiffness_ = std::max(stiffness_, own.stiffness());
-    negative_ += own.negative();
+    rotated_ |= factored_[i] == Factored::definite;
+    stiffness_ = std::max(stiffness_, free_[i].stiffness());
+    negative_ += free_[i].negative();
   }
   return true;
 }
 
 void Linearization::couple() {
   const Clock clock(times_->solve);
-  factor_.factor(reduced_.problem);
+  factor_.factor();
   coupled_ = true;
 }
 
@@ -86,6 +124,7 @@ void Linearization::stiffen() {
   for (solve::ChainPart& chain : reduced_.problem.chains) {
     for (int k = 0; k < chain.chain.links(); ++k) chain.chain.block(k).diagonal() *= 1.0 + kPart;
   }
+  factor_.eliminate_chains(reduced_.problem);
   couple();
 }
 

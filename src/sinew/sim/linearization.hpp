@@ -2,6 +2,7 @@
 // statics iterate with it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "sinew/sim/free_motion.hpp"
@@ -18,8 +19,12 @@ struct Increment {
 /// Keeps its memory from one iterate to the next.
 class Linearization {
  public:
-  /// Evaluates forces and rows at an iterate. Context, iterate and times must outlive what is done here.
-  void evaluate(const StepContext& context, const State& iterate, StageTimes& times);
+  explicit Linearization(threads::Crew& crew = threads::Crew::none()) : crew_(crew) {}
+
+  /// Evaluates forces and rows at an iterate. Context, iterate and times must outlive what is done here. Where it is
+  /// known that `factor` will follow, it may as well be told how: volumes are then factored beside the rods.
+  void evaluate(const StepContext& context, const State& iterate, StageTimes& times,
+                std::optional<solid::Tangent> then = {});
 
   double largest() const { return largest_; }  ///< [N] largest unbalanced force
   double scale() const { return scale_; }      ///< [N] largest force that acts anywhere
@@ -52,18 +57,26 @@ class Linearization {
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
 
  private:
-  bool factor_solids(solid::Tangent kind, std::string& failed);
+  /// Tasks that know nothing of each other: each volume, and all rods.
+  template <class OfSolid, class OfRods>
+  void beside(const OfSolid& of_solid, const OfRods& of_rods);
+  void factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times);
+  bool solids_factored(std::string& failed);
   void couple();
 
+  threads::Crew& crew_;
   const StepContext* context_ = nullptr;
   const State* iterate_ = nullptr;
   StageTimes* times_ = nullptr;
   std::vector<SolidForces> forces_;
   Reduced reduced_;
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
-  bool rotated_ = false, coupled_ = false;
+  bool ahead_ = false, rotated_ = false, coupled_ = false;
   int negative_ = 0;  ///< eigenvalues of the volumes' tangents
+  enum class Factored { failed, as_told, definite };
+  std::vector<Factored> factored_;  ///< each volume
   std::vector<FreeMotion> free_;
+  std::vector<StageTimes> spent_;  ///< by each task
   solve::CoupledFactor factor_;
   std::vector<Eigen::VectorXd> pushes_;
   solve::RightSide side_;

@@ -126,7 +126,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     }
     if (rules.fixed && report.newton == rules.limit && rules.evaluation == Evaluation::motion) return complete();
     context.first_guess = report.newton == 0 && context.rate > 0.0 && !rules.fixed;
-    here.evaluate(context, iterate.state, report.times);
+    // The paper's step is not looked at before it is made.
+    const bool blind = rules.fixed && report.newton < rules.limit;
+    here.evaluate(context, iterate.state, report.times, blind ? std::optional(solid::Tangent::definite) : std::nullopt);
     while (memory.search.too_far(context, here)) {
       memory.search.shorten(context, iterate.state);
       here.evaluate(context, iterate.state, report.times);

@@ -56,7 +56,8 @@ struct Modes;
 
 /// What a Workspace keeps.
 struct Memory {
-  explicit Memory(const Model& model) : context(model), ahead(model) {}
+  Memory(const Model& model, int threads) : crew(threads), context(model), ahead(model), here(crew), there(crew) {}
+  threads::Crew crew;
   StepContext context, ahead;
   Linearization here, there;
   Increment increment, change;

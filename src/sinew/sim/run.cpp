@@ -59,8 +59,8 @@ double run_duration(const Scene& scene) {
   return static_cast<double>(grid_steps(scene)) * scene.time.step;
 }
 
-RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure) {
-  Workspace workspace = make_workspace(model);
+RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure, int threads) {
+  Workspace workspace = make_workspace(model, threads);
   const long steps = grid_steps(model.scene);
   while (state.grid < steps) {
     const StepReport report = advance(model, workspace, state);

@@ -27,6 +27,6 @@ enum class RunEnd { done, stopped, interrupted };
 using OnStep = std::function<bool(const State&, const StepReport&)>;
 
 /// Steps from `state` to the end of the scene's duration. `failure` receives the report of the step that stopped it.
-RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure = nullptr);
+RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure = nullptr, int threads = 1);
 
 }  // namespace sinew

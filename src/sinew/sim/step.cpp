@@ -44,7 +44,7 @@ Command between(Command from, const Command& to, double part) {
   return from;
 }
 
-Workspace::Workspace(const Model& model) : memory_(std::make_unique<Memory>(model)) {}
+Workspace::Workspace(const Model& model, int threads) : memory_(std::make_unique<Memory>(model, threads)) {}
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;

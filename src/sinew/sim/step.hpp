@@ -26,9 +26,19 @@ Command command_of(const Model& model, const State& state);
 /// The command that is a part of the way from one to another.
 Command between(Command from, const Command& to, double part);
 
-/// Seconds spent, summed over the iterations of a step.
+/// Seconds spent, summed over the iterations of a step and all threads.
 struct StageTimes {
   double forces = 0.0, assembly = 0.0, factor = 0.0, compliance = 0.0, rods = 0.0, solve = 0.0;
+
+  StageTimes& operator+=(const StageTimes& other) {
+    forces += other.forces;
+    assembly += other.assembly;
+    factor += other.factor;
+    compliance += other.compliance;
+    rods += other.rods;
+    solve += other.solve;
+    return *this;
+  }
 };
 
 struct StepReport {
@@ -46,10 +56,11 @@ struct StepReport {
 struct Memory;
 
 /// Memory that steps of one model reuse, which must outlive it; holds nothing between them that they would not find
-/// again. One per thread.
+/// again. One per thread that steps. Results are the same to the last bit for any number of `threads` that share the
+/// work of a step.
 class Workspace {
  public:
-  explicit Workspace(const Model& model);
+  explicit Workspace(const Model& model, int threads = 1);
   ~Workspace();
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
@@ -58,7 +69,7 @@ class Workspace {
  private:
   std::unique_ptr<Memory> memory_;
 };
-inline Workspace make_workspace(const Model& model) { return Workspace(model); }
+inline Workspace make_workspace(const Model& model, int threads = 1) { return Workspace(model, threads); }
 
 /// What a step with a fixed number of linearisations (`newton: 1`) evaluates at its end.
 enum class Evaluation {

@@ -170,9 +170,8 @@ void right_side(const CoupledProblem& problem, RightSide& right) {
   for (std::size_t n = 0; n < problem.chains.size(); ++n) right.chains[n] = problem.chains[n].r;
 }
 
-void CoupledFactor::factor(const CoupledProblem& problem) {
+void CoupledFactor::eliminate_chains(const CoupledProblem& problem) {
   problem_ = &problem;
-  lu_.reset();
   factors_.resize(problem.chains.size());
   condensed_.resize(problem.chains.size());
   rooms_.resize(problem.chains.size());
@@ -180,15 +179,20 @@ void CoupledFactor::factor(const CoupledProblem& problem) {
   correction_.dlambda.resize(problem.c.size());
   correction_.dq.resize(problem.chains.size());
   for (std::size_t n = 0; n < problem.chains.size(); ++n) correction_.dq[n].resize(problem.chains[n].r.size());
-  bool chains = true, symmetric = true;
-  for (std::size_t n = 0; n < problem.chains.size() && chains; ++n) {
+  chains_ = true;
+  for (std::size_t n = 0; n < problem.chains.size() && chains_; ++n) {
     const ChainPart& part = problem.chains[n];
-    chains = factors_[n].factor(part.chain);
-    symmetric &= part.chain.symmetric();
-    if (chains) factors_[n].condense(part.attachments, condensed_[n]);
+    chains_ = factors_[n].factor(part.chain);
+    if (chains_) factors_[n].condense(part.attachments, condensed_[n]);
   }
-  for (const VolumePart& volume : problem.volumes) symmetric &= volume.symmetric;
-  if (!chains || !symmetric || !factor_symmetric()) factor_general(!chains);
+}
+
+void CoupledFactor::factor() {
+  lu_.reset();
+  bool symmetric = chains_;
+  for (const ChainPart& part : problem_->chains) symmetric &= part.chain.symmetric();
+  for (const VolumePart& volume : problem_->volumes) symmetric &= volume.symmetric;
+  if (!symmetric || !factor_symmetric()) factor_general(!chains_);
 }
 
 /// Rows that feel a compliance have negative pivots, what they hold then positive ones; the rest are rows again. In
@@ -517,7 +521,8 @@ int CoupledFactor::negative() const {
 
 CoupledSolution solve_direct(const CoupledProblem& problem) {
   CoupledFactor factor;
-  factor.factor(problem);
+  factor.eliminate_chains(problem);
+  factor.factor();
   RightSide right;
   right_side(problem, right);
   CoupledSolution solution;

@@ -95,8 +95,10 @@ struct CoupledSolution {
 /// singular, a complete orthogonal decomposition takes over.
 class CoupledFactor {
  public:
-  /// The problem must outlive its solutions.
-  void factor(const CoupledProblem& problem);
+  /// First what needs no volumes. The problem must outlive its solutions.
+  void eliminate_chains(const CoupledProblem& problem);
+  /// And the border.
+  void factor();
   void solve(const RightSide& right, CoupledSolution& solution);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
@@ -119,6 +121,7 @@ class CoupledFactor {
 
   const CoupledProblem* problem_ = nullptr;
   Kind kind_ = Kind::general;
+  bool chains_ = false;  ///< all of them have pivots
   bool joined_ = false;  ///< chains are written out in the border
   std::vector<linalg::ChainFactor> factors_;
   std::vector<linalg::ChainFactor::Condensed> condensed_;
