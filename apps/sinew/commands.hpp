@@ -17,6 +17,8 @@ struct RunOptions {
   std::filesystem::path resume;
   bool force = false;
   bool quiet = false;
+  bool profile = false;
+  int threads = 0;  ///< 0: two, if the machine has them
 };
 
 int run_scene(const RunOptions& options);

@@ -16,6 +16,7 @@ constexpr const char* kExamples = R"(
 Examples:
   sinew run examples/finger.yaml -o out/finger        simulate, write tables, ParaView files and a picture
   sinew run finger.yaml -o out --set actuators.pull.displacement="5 mm" --set rods.cable.sections=30
+  sinew run finger.yaml --profile --threads 1         where the time of a step goes
   sinew run --resume out/finger                       go on with a run that was stopped
   sinew check finger.yaml                             what the engine makes of a scene; does not run it
   sinew info finger.vtk                               sizes and quality of a mesh
@@ -44,6 +45,10 @@ int main(int argc, char** argv) {
       ->excludes(set);
   run->add_flag("--force", options.force, "Replace the results of an earlier run in the folder");
   run->add_flag("-q,--quiet", options.quiet, "No progress");
+  run->add_flag("--profile", options.profile, "Show at the end where the time went, stage by stage");
+  run->add_option("--threads", options.threads, "Threads that share a step; the results are the same for any number")
+      ->check(CLI::Range(1, 64))
+      ->default_str("2");
 
   std::filesystem::path checked;
   std::vector<std::string> check_overrides;

@@ -1,5 +1,7 @@
 #include "sinew/results.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -124,12 +126,8 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["summary"]["steps_with_rotated_tangent"] = summary.rotated;
     report["summary"]["most_inverted_elements"] = summary.most_inverted;
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;
-    report["time_per_step"] = {{"forces", stage_json(summary.times, &StageTimes::forces)},
-                               {"assembly", stage_json(summary.times, &StageTimes::assembly)},
-                               {"factor", stage_json(summary.times, &StageTimes::factor)},
-                               {"compliance", stage_json(summary.times, &StageTimes::compliance)},
-                               {"rods", stage_json(summary.times, &StageTimes::rods)},
-                               {"solve", stage_json(summary.times, &StageTimes::solve)}};
+    report["time_per_step"]["threads"] = summary.threads;
+    for (const Stage& stage : kStages) report["time_per_step"][stage.name] = stage_json(summary.times, stage.seconds);
   }
   if (summary.end == "unfinished" || summary.times.empty()) keep_what_no_recording_holds(path, report);
   report["steps"] = Json::array();
@@ -184,6 +182,23 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
   return {"picture.png        the end state", "signals.csv        outputs and motors over time",
           "paraview/run.pvd   the motion, for ParaView", "report.json        sizes, status of every step, times",
           "run.sinew          the recording, for --resume and export"};
+}
+
+std::string profile(const RunSummary& summary) {
+  if (summary.times.empty()) return "No step was made.\n";
+  StageTimes sum;
+  for (const StageTimes& own : summary.times) sum += own;
+  const auto steps = static_cast<double>(summary.times.size());
+  std::string text =
+      fmt::format("Time of {} steps, {} threads\n  {:<11} {:>10} {:>10} {:>8}  {}\n", summary.times.size(),
+                  summary.threads, "stage", "mean [ms]", "all [s]", "share", "what");
+  for (const Stage& stage : kStages) {
+    const double own = sum.*stage.seconds;
+    text += fmt::format("  {:<11} {:>10.4f} {:>10.3f} {:>7.1f}%  {}\n", stage.name, 1e3 * own / steps, own,
+                        100.0 * own / sum.step, stage.what);
+  }
+  if (summary.threads > 1) text += "Stages of several threads run beside each other; their times are added.\n";
+  return text;
 }
 
 }  // namespace sinew::app

@@ -19,12 +19,16 @@ struct RunSummary {
   std::vector<StageTimes> times;      ///< of each step made by this program; none for recorded ones
   int rotated = 0;                    ///< of those, steps in which the rotated tangent stood in for the exact one
   int most_inverted = 0;              ///< of those, most elements flat or inside out in one
-  int redundant = 0;                  ///< of those, steps whose rows repeated each other
+  int threads = 1;
+  int redundant = 0;  ///< of those, steps whose rows repeated each other
 };
 
 std::filesystem::path recording_path(const std::filesystem::path& folder);
 
 io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report);
+
+/// Where the time of the steps went, for people.
+std::string profile(const RunSummary& summary);
 
 /// Writes signals.csv, the ParaView series, picture.png and report.json from a recording; returns the files' names.
 std::vector<std::string> write_views(const std::filesystem::path& folder, const LoadedScene& loaded,

@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <thread>
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
@@ -63,12 +65,14 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
 
 /// Steps from a state to the end, records them, writes the views, tells the user; returns the exit code.
 int run_and_record(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
-                   io::RecordingWriter writer, bool quiet) {
+                   io::RecordingWriter writer, const RunOptions& options) {
   const Model& model = loaded.model;
   const double duration = run_duration(model.scene);
-  Progress progress("sinew " + loaded.file.path.filename().string(), duration, quiet);
+  Progress progress("sinew " + loaded.file.path.filename().string(), duration, options.quiet);
   RunSummary summary;
   summary.warnings = model.warnings;
+  summary.threads =
+      options.threads > 0 ? options.threads : std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
   for (const ActuatorModel& actuator : model.actuators) {
     if (std::holds_alternative<External>(actuator.drive)) {
       summary.warnings.push_back("actuators." + actuator.name +
@@ -98,7 +102,7 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
         progress.update(state.time, when(model, state));
         return !interrupted.load();
       },
-      &summary.failure);
+      &summary.failure, summary.threads);
   summary.end = end_word(end);
 
   std::vector<std::string> warnings = warnings_of(model, last);
@@ -127,10 +131,11 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   }
   if (end == RunEnd::interrupted)
     fmt::print(stderr, "Interrupted; go on with: sinew run --resume {}\n", folder.string());
-  if (!quiet) {
+  if (!options.quiet) {
     fmt::print("Results in {}/\n", folder.string());
     for (const std::string& file : files) fmt::print("  {}\n", file);
   }
+  if (options.profile) fmt::print("{}", profile(summary));
   return end == RunEnd::done ? kDone : end == RunEnd::stopped ? kNumericalStop : kInterrupted;
 }
 
@@ -157,7 +162,7 @@ int resume(const RunOptions& options) {
     fmt::print("The run in {} is complete, up to {}.\n", options.resume.string(), when(loaded.model, state));
     return kDone;
   }
-  return run_and_record(loaded, state, options.resume, io::RecordingWriter::append_to(path), options.quiet);
+  return run_and_record(loaded, state, options.resume, io::RecordingWriter::append_to(path), options);
 }
 
 }  // namespace
@@ -190,7 +195,7 @@ int run_scene(const RunOptions& options) {
   header.signal_names = signal_names(loaded.model);
   io::RecordingWriter writer = io::RecordingWriter::create(path, header);
   writer.append(recorded(loaded.model, start, StepReport{}));
-  return run_and_record(loaded, start, options.output, std::move(writer), options.quiet);
+  return run_and_record(loaded, start, options.output, std::move(writer), options);
 }
 
 int export_run(const std::filesystem::path& folder) {

@@ -349,6 +349,66 @@ void add_places(Fronts& plan) {
   plan.updates = shared.end();
 }
 
+/// Slots of the unknowns, and their ranks in their nodes.
+void add_slots(std::span<const int> slots, Fronts& plan) {
+  const std::size_t n = plan.place.size();
+  plan.slot.assign(n, 0);
+  plan.rank.assign(n, 0);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    plan.slot[i] = static_cast<std::uint8_t>(slots[i] % 4);
+    if (plan.slot[i] > 2) throw std::invalid_argument("plan_fronts: a node of more than three unknowns");
+    if (i == 0 || slots[i] / 4 != slots[i - 1] / 4) continue;
+    plan.rank[i] = static_cast<std::uint8_t>(plan.rank[i - 1] + 1);
+    if (plan.place[i] != plan.place[i - 1] + 1 || plan.slot[i] <= plan.slot[i - 1])
+      throw std::invalid_argument("plan_fronts: unknowns of a node that have different neighbours");
+  }
+}
+
+/// Where entries of the matrix and of the border rows go, once strides are known.
+void add_entries(const Compressed& lower, const Compressed& border, const std::vector<int>& front_of, Fronts& plan) {
+  const auto n = static_cast<int>(plan.place.size());
+  std::vector<std::uint8_t> bits(plan.place.size());  // of the node of each first unknown
+  for (int i = n - 1, own = 0; i >= 0; --i) {
+    own |= 1 << plan.slot[i];
+    if (plan.rank[i] > 0) continue;
+    bits[i] = static_cast<std::uint8_t>(own);
+    own = 0;
+  }
+  std::vector<std::vector<Block>> blocks(plan.fronts.size());
+  for (int j = 0; j < n; ++j) {
+    if (plan.rank[j] > 0) continue;
+    for (int at = lower.first[j]; at < lower.first[j + 1]; ++at) {
+      const int i = lower.index[at];
+      if (plan.rank[i] > 0) continue;
+      const int first = plan.place[i] < plan.place[j] ? i : j, later = first == i ? j : i;
+      const Front& front = plan.fronts[front_of[plan.place[first]]];
+      const int row = row_of(plan, front, plan.place[later]), column = plan.place[first] - front.first;
+      blocks[front_of[plan.place[first]]].push_back(
+          {static_cast<std::uint32_t>(row + column * front.stride), bits[later], bits[first]});
+    }
+  }
+  std::vector<std::vector<Fronts::BorderEntry>> entries(plan.fronts.size());
+  for (int k = 0; k < border.size; ++k) {
+    for (int at = border.first[k]; at < border.first[k + 1]; ++at) {
+      const int position = plan.place[border.index[at]];
+      const Front& front = plan.fronts[front_of[position]];
+      entries[front_of[position]].push_back(
+          {at, static_cast<std::uint32_t>(front.rows() + plan.border[k] - front.border +
+                                          (position - front.first) * front.stride)});
+    }
+  }
+  for (std::size_t s = 0; s < plan.fronts.size(); ++s) {
+    Front& front = plan.fronts[s];
+    std::sort(blocks[s].begin(), blocks[s].end(), [](const Block& a, const Block& b) { return a.into < b.into; });
+    front.first_block = plan.blocks.size();
+    front.block_count = static_cast<int>(blocks[s].size());
+    plan.blocks.insert(plan.blocks.end(), blocks[s].begin(), blocks[s].end());
+    front.first_border_entry = plan.border_entries.size();
+    front.border_entry_count = static_cast<int>(entries[s].size());
+    plan.border_entries.insert(plan.border_entries.end(), entries[s].begin(), entries[s].end());
+  }
+}
+
 }  // namespace
 
 const Front& Fronts::front_of(int unknown) const {
@@ -356,17 +416,16 @@ const Front& Fronts::front_of(int unknown) const {
                                      [](int position, const Front& front) { return position < front.first; }));
 }
 
-std::size_t Fronts::entry(int one, int other) const {
+std::size_t Fronts::block(int one, int other) const {
   const int first = place[one] < place[other] ? one : other, later = first == one ? other : one;
   const Front& front = front_of(first);
-  return front.panel + static_cast<std::size_t>(row_of(*this, front, place[later])) +
-         static_cast<std::size_t>(place[first] - front.first) * static_cast<std::size_t>(front.stride);
-}
-
-std::size_t Fronts::border_entry(int row, int unknown) const {
-  const Front& front = front_of(unknown);
-  return front.panel + static_cast<std::size_t>(front.rows() + border[row] - front.border) +
-         static_cast<std::size_t>(place[unknown] - front.first) * static_cast<std::size_t>(front.stride);
+  const auto into = static_cast<std::uint32_t>(row_of(*this, front, place[later] - rank[later]) +
+                                               (place[first] - rank[first] - front.first) * front.stride);
+  const auto begin = blocks.begin() + static_cast<std::ptrdiff_t>(front.first_block), end = begin + front.block_count;
+  const auto found =
+      std::lower_bound(begin, end, into, [](const Block& own, std::uint32_t at) { return own.into < at; });
+  if (found == end || found->into != into) throw std::invalid_argument("Fronts: unknowns that do not meet");
+  return kBlockSize * static_cast<std::size_t>(found - blocks.begin() + 1);
 }
 
 double Fronts::work() const {
@@ -384,7 +443,7 @@ std::size_t Fronts::entries() const {
   return sum;
 }
 
-Fronts plan_fronts(const Compressed& lower, const Compressed& border) {
+Fronts plan_fronts(const Compressed& lower, const Compressed& border, std::span<const int> slots) {
   const Graph graph = graph_of(lower.size, lower.first, lower.index);
   Fronts best;
   for (const auto& ordering : {minimum_degree, nested_dissection}) {
@@ -401,6 +460,8 @@ Fronts plan_fronts(const Compressed& lower, const Compressed& border) {
     if (!best.fronts.empty() && best.work() <= plan.work()) continue;
     add_parts(plan);
     add_places(plan);
+    add_slots(slots, plan);
+    add_entries(lower, border, front_of, plan);
     best = std::move(plan);
   }
   return best;

@@ -12,6 +12,14 @@
 
 namespace sinew::linalg {
 
+/// The entries of two nodes, while a matrix is put together: four rows to a column, three columns, by slots, the
+/// coordinates of a node. Rows are those of the node that is eliminated later.
+inline constexpr int kBlockSize = 12;
+struct Block {
+  std::uint32_t into = 0;              ///< of the first entry, in the panel
+  std::uint8_t rows = 0, columns = 0;  ///< which slots are unknowns, a bit each
+};
+
 /// Unknowns that are eliminated together, and what they meet. Its panel has the rows: its own unknowns, those below
 /// (later ones that they meet), then the border rows that reach it. Its update is what the panel does to the last two.
 struct Front {
@@ -25,6 +33,10 @@ struct Front {
   std::size_t index = 0;              ///< where its rows begin in `below`
   std::size_t first_run = 0;          ///< and in `runs`
   int run_count = 0;
+  std::size_t first_block = 0;  ///< entries of A that begin in its panel
+  int block_count = 0;
+  std::size_t first_border_entry = 0;  ///< and of border rows
+  int border_entry_count = 0;
   int to_panel = 0;             ///< so many of its rows below are columns of its parent's panel
   std::size_t first_child = 0;  ///< where its children begin in `children`
   int child_count = 0;
@@ -40,6 +52,13 @@ struct Fronts {
   std::vector<int> below;     ///< positions of the rows below, ascending
   std::vector<Run> runs;      ///< which rows of the parent they and the border rows are
   std::vector<int> children;
+  std::vector<Block> blocks;  ///< front by front, by columns, each column's from the diagonal down
+  struct BorderEntry {
+    int from = 0;  ///< which of the border's numbers, row by row
+    std::uint32_t into = 0;
+  };
+  std::vector<BorderEntry> border_entries;
+  std::vector<std::uint8_t> slot, rank;  ///< of each unknown: its slot, and how many of its node's come before it
   /// Subtrees that know nothing of each other, the heaviest first: fronts first .. before end, the last one their root.
   /// `top`: the fronts above them, ascending. A choice by size alone.
   struct Part {
@@ -57,13 +76,20 @@ struct Fronts {
   std::span<const int> children_of(const Front& front) const {
     return {children.data() + front.first_child, static_cast<std::size_t>(front.child_count)};
   }
-  /// Where the entry of two unknowns that meet is in the panels, and that of a border row and one of its unknowns. Take
-  /// a search each: for when a model is built.
-  std::size_t entry(int one, int other) const;
-  std::size_t border_entry(int row, int unknown) const;
+  /// Where the numbers of all blocks begin that belong to two unknowns' nodes, which must meet, and of two unknowns
+  /// themselves. The first kBlockSize numbers are of no block. Takes a search: for when a model is built.
+  std::size_t block(int one, int other) const;
+  std::size_t entry(int one, int other) const { return block(one, other) + place_in_block(one, other); }
+  std::size_t numbers() const { return kBlockSize * (blocks.size() + 1); }
   const Front& front_of(int unknown) const;
   double work() const;          ///< multiplications of a numeric factorisation, border rows included
   std::size_t entries() const;  ///< of L below its diagonal, zeros of merged fronts included
+
+ private:
+  std::size_t place_in_block(int one, int other) const {
+    const bool turned = place[one] < place[other];
+    return static_cast<std::size_t>(slot[turned ? other : one] + 4 * slot[turned ? one : other]);
+  }
 };
 
 /// Compressed columns, or rows, of a sparse matrix.
@@ -74,7 +100,9 @@ struct Compressed {
 };
 
 /// `lower`: columns of the lower triangle. `border`: rows of a matrix beside it; the unknowns of a row must all meet
-/// each other, like the nodes of an element. Throws std::invalid_argument where they do not.
-Fronts plan_fronts(const Compressed& lower, const Compressed& border);
+/// each other, like the nodes of an element. `slots`: four times its node plus its slot, 0 to 2, of each unknown,
+/// ascending; none: each is a node of its own. The unknowns of a node must all have the same neighbours. Throws
+/// std::invalid_argument where any of this does not hold.
+Fronts plan_fronts(const Compressed& lower, const Compressed& border, std::span<const int> slots = {});
 
 }  // namespace sinew::linalg

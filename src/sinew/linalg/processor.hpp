@@ -26,10 +26,19 @@ const Kernels* by_name(std::string_view name, std::initializer_list<const Kernel
   return found != sets.end() && runs_here(name) ? *found : nullptr;
 }
 
-/// The first that runs here.
+/// A set's name that the environment gives as SINEW_REGISTERS, to keep from wider ones: for comparisons. Throws
+/// std::runtime_error where it names none.
+std::string_view widest_wanted();
+
+/// The first that runs here, and is wanted.
 template <class Kernels>
 const Kernels& fastest(std::initializer_list<const Kernels*> sets) {
-  return **std::find_if(sets.begin(), sets.end(), [](const Kernels* set) { return runs_here(set->name); });
+  const std::string_view widest = widest_wanted();
+  const auto first =
+      std::find_if(sets.begin(), sets.end(), [&](const Kernels* set) { return widest.empty() || set->name == widest; });
+  // (A name of another machine's sets: whatever there is.)
+  return **std::find_if(first == sets.end() ? sets.begin() : first, sets.end(),
+                        [](const Kernels* set) { return runs_here(set->name); });
 }
 
 }  // namespace sinew::linalg

@@ -16,14 +16,17 @@ constexpr double kVanished = 1e-13;
 
 }  // namespace
 
-std::shared_ptr<const Fronts> SparseFactor::make_plan(const Matrix& pattern, const Rows& border) {
+std::shared_ptr<const Fronts> SparseFactor::make_plan(const Matrix& pattern, const Rows& border,
+                                                      std::span<const int> slots) {
   return std::make_shared<const Fronts>(
       plan_fronts({static_cast<int>(pattern.cols()), pattern.outerIndexPtr(), pattern.innerIndexPtr()},
-                  {static_cast<int>(border.rows()), border.outerIndexPtr(), border.innerIndexPtr()}));
+                  {static_cast<int>(border.rows()), border.outerIndexPtr(), border.innerIndexPtr()}, slots));
 }
 
 SparseFactor::SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& kernels)
     : plan_(std::move(plan)), kernels_(&kernels) {
+  values_.assign(plan_->numbers(), 0.0);
+  border_values_.assign(plan_->border_entries.size(), 0.0);
   panels_.assign(plan_->panels + kLanes, 0.0);
   updates_.assign(plan_->updates + kLanes, 0.0);
   diagonal_.setZero(size());
@@ -39,7 +42,7 @@ SparseFactor::SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& ke
   bordering_.setZero(whole_lanes(borders()) + kLanes);
 }
 
-void SparseFactor::clear() { std::fill(panels_.begin(), panels_.end(), 0.0); }
+void SparseFactor::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
 
 SparseFactor::Matrix SparseFactor::assembled() const {
   std::vector<int> unknown(plan_->place.size());
@@ -47,12 +50,22 @@ SparseFactor::Matrix SparseFactor::assembled() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (const Front& front : plan_->fronts) {
     const std::span<const int> below = plan_->rows_below(front);
-    for (int j = 0; j < front.columns; ++j) {
-      const double* column = panels_.data() + front.panel + static_cast<std::ptrdiff_t>(j) * front.stride;
-      for (int i = j; i < front.rows(); ++i) {
-        const int row = i < front.columns ? front.first + i : below[i - front.columns];
-        const auto [a, b] = std::minmax({unknown[row], unknown[front.first + j]});
-        if (column[i] != 0.0) entries.emplace_back(b, a, column[i]);
+    for (int k = 0; k < front.block_count; ++k) {
+      const std::size_t number = front.first_block + static_cast<std::size_t>(k);
+      const Block& block = plan_->blocks[number];
+      int j = static_cast<int>(block.into) / front.stride;
+      for (int c = 0; c < 3; ++c) {
+        if (!(block.columns >> c & 1)) continue;
+        int i = static_cast<int>(block.into) % front.stride;
+        for (int r = 0; r < 3; ++r) {
+          if (!(block.rows >> r & 1)) continue;
+          const auto [a, b] = std::minmax(
+              {unknown[i < front.columns ? front.first + i : below[i - front.columns]], unknown[front.first + j]});
+          const double value = values_[kBlockSize * (number + 1) + static_cast<std::size_t>(r + 4 * c)];
+          if (i >= j && value != 0.0) entries.emplace_back(b, a, value);
+          ++i;
+        }
+        ++j;
       }
     }
   }
@@ -67,21 +80,18 @@ bool SparseFactor::factor(const Matrix& A, const Rows& border, threads::Crew& cr
   clear();
   for (Eigen::Index j = 0; j < A.outerSize(); ++j) {
     for (Matrix::InnerIterator at(A, j); at; ++at)
-      panels_[plan_->entry(static_cast<int>(at.row()), static_cast<int>(j))] += at.value();
+      values_[plan_->entry(static_cast<int>(at.row()), static_cast<int>(j))] += at.value();
   }
-  for (Eigen::Index k = 0; k < border.outerSize(); ++k) {
-    for (Rows::InnerIterator at(border, k); at; ++at)
-      panels_[plan_->border_entry(static_cast<int>(k), static_cast<int>(at.col()))] += at.value();
-  }
+  Rows rows = border;
+  rows.makeCompressed();
+  if (rows.nonZeros() != static_cast<Eigen::Index>(border_values_.size()))
+    throw std::invalid_argument("SparseFactor: border rows of another pattern");
+  std::copy_n(rows.valuePtr(), rows.nonZeros(), border_values_.begin());
   return factor(crew);
 }
 
 bool SparseFactor::factor(threads::Crew& crew) {
   if (size() == 0) return true;
-  for (const Front& front : plan_->fronts) {
-    for (int j = 0; j < front.columns; ++j)
-      diagonal_[front.first + j] = std::abs(panels_[front.panel + static_cast<std::size_t>(j) * (front.stride + 1)]);
-  }
   if (!factor_fronts(crew)) return false;
   negative_ = static_cast<int>((pivots_.array() < 0.0).count());
   return pivots_.cwiseAbs().minCoeff() > kVanished * diagonal_.maxCoeff() || scaled_condition() * kVanished < 1.0;
@@ -117,11 +127,41 @@ bool SparseFactor::factor_fronts(threads::Crew& crew) {
   return ok;
 }
 
+/// Its entries of A and of the border, where they belong.
+void SparseFactor::start_panel(const Front& front) {
+  double* const panel = panels_.data() + front.panel;
+  const std::ptrdiff_t stride = front.stride;
+  std::fill_n(panel, stride * front.columns, 0.0);
+  constexpr std::uint8_t kAll = 7;
+  for (std::size_t k = front.first_block; k < front.first_block + static_cast<std::size_t>(front.block_count); ++k) {
+    const Block& block = plan_->blocks[k];
+    const double* from = values_.data() + kBlockSize * (k + 1);
+    double* to = panel + block.into;
+    if (block.rows == kAll && block.columns == kAll) {
+      for (int c = 0; c < 3; ++c, from += 4, to += stride) std::copy_n(from, 3, to);
+      continue;
+    }
+    for (int c = 0; c < 3; ++c, from += 4) {
+      if (!(block.columns >> c & 1)) continue;
+      double* next = to;
+      for (int r = 0; r < 3; ++r) {
+        if (block.rows >> r & 1) *next++ = from[r];
+      }
+      to += stride;
+    }
+  }
+  for (int j = 0; j < front.columns; ++j) diagonal_[front.first + j] = std::abs(panel[j * (stride + 1)]);
+  const auto* entry = plan_->border_entries.data() + front.first_border_entry;
+  for (int k = 0; k < front.border_entry_count; ++k, ++entry)
+    panel[entry->into] = border_values_[static_cast<std::size_t>(entry->from)];
+}
+
 bool SparseFactor::factor_front(const Front& front, double* room, threads::Crew& crew) {
   constexpr int kColumns = 96;  // of a panel at a time
   double* const panel = panels_.data() + front.panel;
   const int height = front.height();
   double* const signs = signs_.data() + front.first;
+  start_panel(front);
   add_children(front, room, true, crew);
   for (int first = 0; first < front.columns; first += kColumns) {
     const int count = std::min(kColumns, front.columns - first), end = first + count;

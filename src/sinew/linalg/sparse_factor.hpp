@@ -25,15 +25,18 @@ class SparseFactor {
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
   /// The unknowns of a border row must all meet each other in A; throws std::invalid_argument where they do not.
-  static std::shared_ptr<const Fronts> make_plan(const Matrix& pattern, const Rows& border = {});
+  static std::shared_ptr<const Fronts> make_plan(const Matrix& pattern, const Rows& border = {},
+                                                 std::span<const int> slots = {});
 
   explicit SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& kernels = linalg::kernels());
 
-  /// The numbers of A and H are added in place, between `clear` and `factor`, each at its Fronts::entry.
+  /// The numbers of A are added between `clear` and `factor`, each at its Fronts::entry; those of H are set, row by
+  /// row.
   const Fronts& plan() const { return *plan_; }
   void clear();
-  double* values() { return panels_.data(); }
-  /// A as it has been put together, before it is factored.
+  double* values() { return values_.data(); }
+  double* border_values() { return border_values_.data(); }
+  /// A as it has been put together.
   Matrix assembled() const;
   /// False if rounding is all that is left of a pivot, or it is not finite; solves are then meaningless.
   /// The result is the same to the last bit, whatever the crew.
@@ -67,6 +70,7 @@ class SparseFactor {
 
  private:
   bool factor_fronts(threads::Crew& crew);
+  void start_panel(const Front& front);
   bool factor_front(const Front& front, double* room, threads::Crew& crew);
   double* update_of(const Front& front, double* room) {
     return (front.in_part ? room : updates_.data()) + front.update;
@@ -78,7 +82,7 @@ class SparseFactor {
 
   std::shared_ptr<const Fronts> plan_;
   const Kernels* kernels_;
-  std::vector<double> panels_, updates_;
+  std::vector<double> values_, border_values_, panels_, updates_;
   std::vector<std::vector<double>> rooms_;  ///< of parts that are done at one time
   Eigen::VectorXd diagonal_;                ///< of A, its size
   Eigen::VectorXd pivots_, signs_;

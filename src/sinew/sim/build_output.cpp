@@ -55,4 +55,12 @@ void build_output(Model& model, const std::string& name, const Output& output) {
   model.outputs.push_back(own);
 }
 
+void build_effector(Model& model, const std::string& name, int number) {
+  const std::string path = "effectors." + std::to_string(number);
+  const OutputModel& output = model.outputs[find(model.scene.outputs, name, path, "output")];
+  if (output.solid < 0 || output.quantity != Quantity::position)
+    reject(path, name, "is no position of a point of a solid", "name an output of `{solid: NAME, point: [x, y, z]}`");
+  model.effectors.push_back({output.solid, output.where});
+}
+
 }  // namespace sinew::building

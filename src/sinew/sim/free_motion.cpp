@@ -67,16 +67,19 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   {
     const Clock clock(times.assembly);
     factor_->clear();
-    double* values = factor_->values();
+    double* const values = factor_->values();
     for (std::size_t k = 0; k < model.rows.size(); ++k) {
-      if (!is_on(iterate, context.model.solid_rows[model.rows[k]])) continue;
+      const bool on = is_on(iterate, context.model.solid_rows[model.rows[k]]);
       const int* first = model.border.outerIndexPtr() + 3 * k;
-      for (int at = first[0]; at < first[3]; ++at) values[model.border_places[at]] = model.border.valuePtr()[at];
+      for (int at = first[0]; at < first[3]; ++at)
+        factor_->border_values()[at] = on ? model.border.valuePtr()[at] : 0.0;
     }
+    for (int at = model.border.outerIndexPtr()[3 * model.rows.size()]; at < model.border.nonZeros(); ++at)
+      factor_->border_values()[at] = model.border.valuePtr()[at];
     assemble(model, context.solids[number], iterate.solids[number].x, kind, values);
     if (kind == solid::Tangent::exact) {
       each_load(context, number, [&](const SolidLoadModel& load, double factor) {
-        add_pressure_tangent(model, load, factor, iterate.solids[number].x, values);
+        add_pressure_tangent(load, factor, iterate.solids[number].x, values);
       });
     }
   }
@@ -89,16 +92,19 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   for (const int row : model.rows) {
     for (int i = 0; i < 3; ++i) volume.at.push_back(context.model.solid_rows[row].row + i);
   }
-  factor_->compliance(volume.W);
-  volume.symmetric = true;
+  Eigen::MatrixXd& W = model.effectors.empty() ? volume.W : compliance_;
+  factor_->compliance(W);
   Y_.resize(0, 0);
   Z_.resize(0, 0);
-  if (kind == solid::Tangent::exact) add_rim(context, iterate, number, volume);
+  if (kind == solid::Tangent::exact) add_rim(context, iterate, number, W);
+  volume.symmetric = Z_.size() == 0;
+  const auto rows = static_cast<Eigen::Index>(volume.at.size());
+  if (!model.effectors.empty()) volume.W = W.topLeftCorner(rows, rows);
   return Z_.allFinite();
 }
 
 /// The antisymmetric part of the pressures' tangents.
-void FreeMotion::add_rim(const StepContext& context, const State& iterate, int number, solve::VolumePart& volume) {
+void FreeMotion::add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W) {
   const SolidModel& model = context.model.solids[number];
   std::vector<int> unknowns;
   Eigen::MatrixXd N;
@@ -119,8 +125,7 @@ void FreeMotion::add_rim(const StepContext& context, const State& iterate, int n
   const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
   Z_ = (Eigen::MatrixXd::Identity(N.rows(), N.cols()) + N * C).partialPivLu().solve(N);
-  volume.W -= HY * Z_ * HY.transpose();
-  volume.symmetric = false;
+  W -= HY * Z_ * HY.transpose();
 }
 
 const Eigen::VectorXd& FreeMotion::with_rim(const Eigen::VectorXd& y) {
@@ -136,10 +141,28 @@ void FreeMotion::push(const SolidModel& model, const Model& whole, const Eigen::
   factor_->border_times(with_rim(y_), rows_);
   for (std::size_t k = 0; k < model.rows.size(); ++k)
     c.segment<3>(whole.solid_rows[model.rows[k]].row) += rows_.segment<3>(static_cast<Eigen::Index>(3 * k));
+  free_ = rows_.tail(static_cast<Eigen::Index>(3 * model.effectors.size()));
+}
+
+void FreeMotion::effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
+                                 bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
+  if (model.effectors.empty()) return;
+  rows_.setZero();
+  for (std::size_t k = 0; k < model.rows.size(); ++k)
+    rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
+  const auto count = static_cast<Eigen::Index>(3 * model.effectors.size());
+  for (std::size_t k = 0; k < model.effectors.size(); ++k) {
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Index own = static_cast<Eigen::Index>(3 * k) + i;
+      motion[3 * model.effectors[k] + i] =
+          (pushed ? free_[own] : 0.0) + compliance_.row(compliance_.rows() - count + own).dot(rows_);
+    }
+  }
 }
 
 void FreeMotion::correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
                          Eigen::Matrix3Xd& dx) {
+  rows_.setZero();
   for (std::size_t k = 0; k < model.rows.size(); ++k)
     rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
   factor_->add_border_transposed(rows_, y_);

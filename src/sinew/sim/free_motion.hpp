@@ -34,16 +34,21 @@ class FreeMotion {
 
   /// Solves the first half for a force over the unknowns. H dx, without dlambda, is added to the violations c.
   void push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c);
+  /// Motion [m] of the volume's effectors, three numbers each: that of the push, and what multipliers add.
+  void effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, bool pushed,
+                       Eigen::Ref<Eigen::VectorXd> motion);
   /// And the second: 3 x nodes displacement of the volume (zero where it is held).
   void correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, Eigen::Matrix3Xd& dx);
 
  private:
-  void add_rim(const StepContext& context, const State& iterate, int number, solve::VolumePart& volume);
+  void add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W);
   /// V y.
   const Eigen::VectorXd& with_rim(const Eigen::VectorXd& y);
 
   std::optional<linalg::SparseFactor> factor_;
-  Eigen::MatrixXd Y_, Z_;  ///< V = 1 - Y Z Y^T S; empty where A is symmetric
+  Eigen::MatrixXd compliance_;  ///< of all border rows, those of effectors last
+  Eigen::VectorXd free_;        ///< motion of effectors by the push
+  Eigen::MatrixXd Y_, Z_;       ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
 };
 

@@ -144,22 +144,29 @@ bool Linearization::unstable() const {
   return !rotated_ && coupled_ && conservative() && negative_ + factor_.negative() > context_->model.rows;
 }
 
-void Linearization::solve(const Linearization& right, Increment& increment) {
+void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer) {
   pushes_.resize(right.forces_.size());
   for (std::size_t i = 0; i < pushes_.size(); ++i) pushes_[i] = -right.forces_[i].r;
   solve::right_side(right.reduced_.problem, side_);
-  respond(pushes_, side_, increment);
+  respond(pushes_, side_, increment, steer);
 }
 
-void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment) {
+void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment,
+                            const Steer& steer) {
   const Clock clock(times_->solve);
   const Model& model = context_->model;
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
   factor_.solve(side, increment.reduced);
+  if (steer && increment.reduced.ok) steer(increment.reduced);
   increment.dx.resize(free_.size());
   if (!increment.reduced.ok) return;
   for (std::size_t i = 0; i < free_.size(); ++i)
     free_[i].correct(model.solids[i], model, increment.reduced.dlambda, increment.dx[i]);
+}
+
+void Linearization::effector_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    free_[i].effector_motion(context_->model.solids[i], context_->model, dlambda, pushed, motion);
 }
 
 void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate) {

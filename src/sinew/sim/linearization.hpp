@@ -2,6 +2,7 @@
 // statics iterate with it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -51,10 +52,17 @@ class Linearization {
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
 
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
-  void solve(Increment& increment) { solve(*this, increment); }
-  void solve(const Linearization& right, Increment& increment);
+  /// Whoever steers may change the reduced solution, before volumes follow it.
+  using Steer = std::function<void(solve::CoupledSolution& solution)>;
+  void solve(Increment& increment, const Steer& steer = {}) { solve(*this, increment, steer); }
+  void solve(const Linearization& right, Increment& increment, const Steer& steer = {});
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
-  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
+  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment,
+               const Steer& steer = {});
+  /// The reduced solution alone for another right side, volumes without forces.
+  void couple(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.solve(side, solution); }
+  /// How multipliers move the effectors [m], and, while the last forces on volumes still stand (`pushed`), these.
+  void effector_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion);
 
  private:
   /// Tasks that know nothing of each other: each volume, and all rods.

@@ -230,6 +230,8 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
+  for (std::size_t i = 0; i < scene.effectors.size(); ++i)
+    build_effector(model, scene.effectors[i], static_cast<int>(i));
   for (std::size_t i = 0; i < model.solids.size(); ++i) check_held(model, static_cast<int>(i));
   count_jumps(model);
   plan_factors(model);

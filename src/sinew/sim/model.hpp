@@ -31,11 +31,11 @@ struct PlacedMesh {
   double diagonal = 0.0;                       ///< [m]
 };
 
-/// Where the 3 x 3 entries of two nodes go in a volume's factor: entry (i, j) at `at` + i + j stride, i and j counted
-/// among the coordinates that are free; with a negative stride at `at` + j - i stride.
+/// Where the 3 x 3 entries of two nodes go among the numbers of a volume's factor (linalg/fronts): entry (i, j) at
+/// `at` + i + 4 j, turned at `at` + j + 4 i. What is held goes where nothing is read.
 struct BlockPlace {
-  std::uint32_t at = 0;
-  std::int32_t stride = 0;
+  std::uint32_t at : 31 = 0;
+  std::uint32_t turned : 1 = 0;
 };
 
 /// A volume, where it is attached, and how its matrix is factored.
@@ -48,12 +48,13 @@ struct SolidModel {
   std::vector<int> carrier;           ///< per node with held coordinates: number of the frame that holds it
   Eigen::Matrix3Xd springs;           ///< [N/m] per node and axis
   std::vector<int> rows;              ///< numbers of the solid rows on it
-  linalg::SparseFactor::Rows border;  ///< H: three rows for each of them, over its unknowns
+  std::vector<int> effectors;         ///< and of the effectors
+  linalg::SparseFactor::Rows border;  ///< H: three rows for each of them, effectors last, over its unknowns
   std::shared_ptr<const linalg::Fronts> fronts;
-  std::vector<std::size_t> border_places;  ///< in the factor: of H's entries
-  std::vector<BlockPlace> places;          ///< of every element's blocks on and below its diagonal, row by row
-  std::vector<std::size_t> first_place;    ///< per element
-  std::vector<BlockPlace> mass_places;     ///< of the entries of the mass matrix's lower triangle
+  std::vector<BlockPlace> places;              ///< of every element's blocks on and below its diagonal, row by row
+  std::vector<std::size_t> first_place;        ///< per element
+  std::vector<solid::TetPlaces> batch_places;  ///< of every batch's, none of which is turned
+  std::vector<BlockPlace> mass_places;         ///< of the entries of the mass matrix's lower triangle
   int held() const { return 3 * body.nodes() - body.unknowns; }
 };
 
@@ -170,6 +171,13 @@ struct LoadModel {
   std::variant<RodLoadModel, SolidLoadModel> on;
 };
 
+/// A point of a solid that is to be moved somewhere. Its three rows stand beside those of couplings, without
+/// multipliers.
+struct EffectorModel {
+  int solid = 0;
+  solid::EmbeddedPoint where;
+};
+
 struct OutputModel {
   std::string name;
   int solid = -1, rod = -1;
@@ -198,6 +206,7 @@ struct Model {
   std::vector<PointModel> dropped;  ///< asked for, but determined by others: no rows, only watched
   std::vector<TieModel> ties;
   std::vector<SolidRow> solid_rows;
+  std::vector<EffectorModel> effectors;
   std::vector<ActuatorModel> actuators;
   std::vector<LoadModel> loads;
   std::vector<OutputModel> outputs;

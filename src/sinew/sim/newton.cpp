@@ -150,7 +150,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.rotated |= here.rotated();
     if (context.rate == 0.0) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
-    here.solve(increment);
+    here.solve(increment, rules.steer);
     if (!increment.reduced.ok && !descent && !rules.fixed) {
       here.stiffen();
       here.solve(increment);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sinew/sim/linearization.hpp"
+#include "sinew/solve/bounded.hpp"
 
 namespace sinew {
 
@@ -29,6 +30,7 @@ struct NewtonRules {
   Linearization::Wanted wanted = Linearization::Wanted::descent;
   const AcrossPath* across = nullptr;        ///< t is looked for, too
   Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
+  Linearization::Steer steer = {};           ///< changes increments: of fixed rounds
 };
 
 /// Says what is prescribed at t.
@@ -53,6 +55,20 @@ class LineSearch {
 };
 
 struct Modes;
+struct Goal;
+
+/// What an inverse step works with.
+struct InverseRoom {
+  /// Adds to a solution what the actuators' best forces change, and puts these into the context's command.
+  void steer(const Goal& goal, StepContext& context, const State& iterate, Linearization& here,
+             solve::CoupledSolution& solution);
+
+  solve::RightSide unit;
+  std::vector<solve::CoupledSolution> responses;  ///< to one newton of each actuator
+  Eigen::MatrixXd J, H;
+  Eigen::VectorXd e, g, lower, upper, p;
+  solve::Bounded bounded;
+};
 
 /// What a Workspace keeps.
 struct Memory {
@@ -64,6 +80,7 @@ struct Memory {
   LineSearch search;
   Iterate iterate;
   Command command;
+  InverseRoom inverse;
   rod::Configuration room;
   std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
 };

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sinew/sim/clock.hpp"
 #include "sinew/sim/modal.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/statics.hpp"
@@ -18,7 +19,9 @@ StepReport taken(StepResult result, State& state) {
 
 }  // namespace
 
-StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
+namespace {
+
+StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
   if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
   if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);
   const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
@@ -44,6 +47,19 @@ StepReport advance(const Model& model, Workspace& workspace, State& state, Evalu
     if (lands) ++state.grid;
     return report;
   }
+  return report;
+}
+
+}  // namespace
+
+StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
+  double seconds = 0.0;
+  StepReport report;
+  {
+    const Clock clock(seconds);
+    report = try_to_advance(model, workspace, state, evaluation);
+  }
+  report.times.step = seconds;
   return report;
 }
 

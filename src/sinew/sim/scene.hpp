@@ -361,6 +361,7 @@ struct Scene {
   Named<Actuator> actuators;
   Named<Load> loads;
   Named<Output> outputs;
+  std::vector<std::string> effectors;  ///< outputs, positions of points of solids, that `inverse_step` moves
 };
 
 }  // namespace sinew

@@ -31,29 +31,14 @@ void each_mass(const solid::Body& body, const Visit& visit) {
   }
 }
 
-/// Adds the entries (i, j) of two nodes where both coordinates are free. In a block on the diagonal the upper triangle
-/// is added, too, where nothing reads it.
+/// Adds the entries (i, j) of two nodes. In a block on the diagonal the upper triangle is added, too, where nothing
+/// reads it.
 template <class Entry>
-void add_block(const solid::Body& body, int row, int column, const BlockPlace& place, const Entry& entry,
-               double* values) {
-  const auto rows = body.unknown.col(row), columns = body.unknown.col(column);
-  double* at = values + place.at;
-  const std::ptrdiff_t down = place.stride > 0 ? 1 : -place.stride, across = place.stride > 0 ? place.stride : 1;
-  if (rows.minCoeff() >= 0 && columns.minCoeff() >= 0) {
-    for (int j = 0; j < 3; ++j) {
-      for (int i = 0; i < 3; ++i) at[i * down + j * across] += entry(i, j);
-    }
-    return;
-  }
+void add_block(const BlockPlace& place, const Entry& entry, double* values) {
+  double* const at = values + place.at;
+  const int down = place.turned ? 4 : 1, across = 5 - down;
   for (int j = 0; j < 3; ++j) {
-    if (columns[j] < 0) continue;
-    double* next = at;
-    at += across;
-    for (int i = 0; i < 3; ++i) {
-      if (rows[i] < 0) continue;
-      *next += entry(i, j);
-      next += down;
-    }
+    for (int i = 0; i < 3; ++i) at[i * down + j * across] += entry(i, j);
   }
 }
 
@@ -96,21 +81,22 @@ Pattern pattern_of(const solid::Body& body) {
   return A;
 }
 
-/// H of some solid rows of one volume: how far the point moves per motion of the volume's unknowns.
-linalg::SparseFactor::Rows border_rows(const Model& model, const SolidModel& solid) {
+/// H of some points of one volume: how far each moves per motion of the volume's unknowns.
+linalg::SparseFactor::Rows border_rows(const solid::Body& body,
+                                       const std::vector<const solid::EmbeddedPoint*>& points) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < solid.rows.size(); ++k) {
-    const solid::EmbeddedPoint& where = model.solid_rows[static_cast<std::size_t>(solid.rows[k])].where;
-    const std::span<const int> nodes = solid.body.cells[where.element].nodes();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::span<const int> nodes = body.cells[points[k]->element].nodes();
     for (std::size_t c = 0; c < nodes.size(); ++c) {
       for (int axis = 0; axis < 3; ++axis) {
-        const int unknown = solid.body.unknown(axis, nodes[c]);
+        const int unknown = body.unknown(axis, nodes[c]);
         if (unknown >= 0)
-          entries.emplace_back(static_cast<int>(3 * k) + axis, unknown, where.weights[static_cast<Eigen::Index>(c)]);
+          entries.emplace_back(static_cast<int>(3 * k) + axis, unknown,
+                               points[k]->weights[static_cast<Eigen::Index>(c)]);
       }
     }
   }
-  linalg::SparseFactor::Rows H(static_cast<Eigen::Index>(3 * solid.rows.size()), solid.body.unknowns);
+  linalg::SparseFactor::Rows H(static_cast<Eigen::Index>(3 * points.size()), body.unknowns);
   H.setFromTriplets(entries.begin(), entries.end());
   return H;
 }
@@ -125,28 +111,58 @@ int first_unknown(const solid::Body& body, int node) {
 
 BlockPlace block_place(const SolidModel& solid, int row, int column) {
   const int one = first_unknown(solid.body, row), other = first_unknown(solid.body, column);
-  if (one < 0 || other < 0) return {};
-  const linalg::Fronts& fronts = *solid.fronts;
-  const bool turned = fronts.place[one] < fronts.place[other];
-  const int stride = fronts.front_of(turned ? one : other).stride;
-  return {static_cast<std::uint32_t>(fronts.entry(one, other)), turned ? -stride : stride};
+  BlockPlace place;
+  if (one < 0 || other < 0) return place;
+  place.at = static_cast<std::uint32_t>(solid.fronts->block(one, other)) & 0x7fffffffU;
+  place.turned = solid.fronts->place[one] < solid.fronts->place[other];
+  return place;
+}
+
+/// Nodes of batches in the order of elimination, so that none of their blocks is turned, and where these go.
+void place_batches(SolidModel& solid) {
+  std::vector<int> rank(static_cast<std::size_t>(solid.body.nodes()), -1);
+  for (int node = 0; node < solid.body.nodes(); ++node) {
+    const int unknown = first_unknown(solid.body, node);
+    if (unknown >= 0) rank[static_cast<std::size_t>(node)] = solid.fronts->place[unknown];
+  }
+  solid::sort_batches(solid.body, rank);
+  solid.batch_places.assign(solid.body.batches.size(), {});
+  for (std::size_t k = 0; k < solid.batch_places.size(); ++k) {
+    const solid::TetBatch& batch = solid.body.batches[k];
+    for (int i = 0; i < batch.count; ++i) {
+      for (int a = 0, number = 0; a < 4; ++a) {
+        for (int b = 0; b <= a; ++b, ++number)
+          solid.batch_places[k].block[number][i] = block_place(solid, batch.node[a][i], batch.node[b][i]).at;
+      }
+    }
+  }
 }
 
 void plan_factor(Model& model, int number) {
   SolidModel& solid = model.solids[static_cast<std::size_t>(number)];
   const solid::Body& body = solid.body;
-  for (std::size_t k = 0; k < model.solid_rows.size(); ++k) {
-    if (model.solid_rows[k].solid == number) solid.rows.push_back(static_cast<int>(k));
+  std::vector<const solid::EmbeddedPoint*> points;
+  const auto gather = [&](const auto& all, std::vector<int>& own) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all[k].solid != number) continue;
+      own.push_back(static_cast<int>(k));
+      points.push_back(&all[k].where);
+    }
+  };
+  gather(model.solid_rows, solid.rows);
+  gather(model.effectors, solid.effectors);
+  solid.border = border_rows(body, points);
+  std::vector<int> slots(static_cast<std::size_t>(body.unknowns));
+  for (int node = 0; node < body.nodes(); ++node) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (body.unknown(axis, node) >= 0) slots[static_cast<std::size_t>(body.unknown(axis, node))] = 4 * node + axis;
+    }
   }
-  solid.border = border_rows(model, solid);
-  solid.fronts = linalg::SparseFactor::make_plan(pattern_of(body), solid.border);
-  if (solid.fronts->panels > std::numeric_limits<std::uint32_t>::max())
+  solid.fronts = linalg::SparseFactor::make_plan(pattern_of(body), solid.border, slots);
+  if (solid.fronts->panels > std::numeric_limits<std::uint32_t>::max() ||
+      solid.fronts->numbers() > std::numeric_limits<std::int32_t>::max())
     building::reject("solids." + solid.name, std::to_string(body.unknowns) + " unknowns",
                      "its factor would take more than 32 GB", "use a coarser mesh");
-  for (int k = 0; k < solid.border.rows(); ++k) {
-    for (linalg::SparseFactor::Rows::InnerIterator at(solid.border, k); at; ++at)
-      solid.border_places.push_back(solid.fronts->border_entry(k, static_cast<int>(at.col())));
-  }
   const auto add_places = [&](std::span<const int> nodes, std::vector<BlockPlace>& places) {
     each_pair(nodes, [&](std::size_t a, std::size_t b) { places.push_back(block_place(solid, nodes[a], nodes[b])); });
   };
@@ -157,6 +173,7 @@ void plan_factor(Model& model, int number) {
     solid.first_place.push_back(solid.places.size());
     add_places(cell.nodes(), solid.places);
   }
+  place_batches(solid);
   each_mass(body, [&](int row, int column, double) { solid.mass_places.push_back(block_place(solid, row, column)); });
   for (LoadModel& load : model.loads) {
     SolidLoadModel* const own = std::get_if<SolidLoadModel>(&load.on);
@@ -171,8 +188,7 @@ void plan_factors(Model& model) {
   for (std::size_t i = 0; i < model.solids.size(); ++i) plan_factor(model, static_cast<int>(i));
 }
 
-void add_pressure_tangent(const SolidModel& model, const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x,
-                          double* values) {
+void add_pressure_tangent(const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x, double* values) {
   const BlockPlace* place = load.places.data();
   for (const solid::CellFace& face : load.faces) {
     const Eigen::MatrixXd K = solid::pressure_tangent(face, factor * load.pressure, x);
@@ -181,7 +197,7 @@ void add_pressure_tangent(const SolidModel& model, const SolidLoadModel& load, d
         const auto row = static_cast<Eigen::Index>(3 * a) + i, column = static_cast<Eigen::Index>(3 * b) + j;
         return 0.5 * (K(row, column) + K(column, row));
       };
-      add_block(model.body, face.nodes()[a], face.nodes()[b], *place++, entry, values);
+      add_block(*place++, entry, values);
     });
   }
 }
@@ -218,31 +234,26 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
     const std::span<const int> nodes = body.cells[cell].nodes();
     each_pair(nodes, [&](std::size_t a, std::size_t b) {
       const auto block = own.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-      add_block(body, nodes[a], nodes[b], *place++, block, values);
+      add_block(*place++, block, values);
     });
   };
   const auto insert_batch = [&](const solid::TetBatch& batch, const solid::TetStiffness& own, unsigned left_out) {
-    for (int i = 0; i < batch.count; ++i) {
-      if (left_out >> i & 1U) continue;
-      const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(batch.cell[i])];
-      int number = 0;
-      for (int a = 0; a < 4; ++a) {
-        for (int b = 0; b <= a; ++b) {
-          const solid::Eight(&block)[9] = own.block[number++];
-          add_block(
-              body, batch.node[a][i], batch.node[b][i], *place++,
-              [&block, i](int row, int column) { return block[row + 3 * column][i]; }, values);
-        }
-      }
+    const auto number = static_cast<std::size_t>(&batch - body.batches.data());
+    if (left_out == 0) return solid::tet_kernels().add(own, model.batch_places[number], values);
+    solid::TetPlaces places = model.batch_places[number];
+    for (int i = 0; i < solid::kBatch; ++i) {
+      if (!(left_out >> i & 1U)) continue;
+      for (int k = 0; k < 10; ++k) places.block[k][i] = 0;  // where nothing is read
     }
+    solid::tet_kernels().add(own, places, values);
   };
   // By reference: functions as large as these would ask for memory.
   solid::assemble_tangent(body, start, x, kind, std::cref(insert), std::cref(insert_batch));
   const double factor = solid::mass_factor(body, start.rate);
   const BlockPlace* place = model.mass_places.data();
-  each_mass(body, [&](int row, int column, double mass) {
+  each_mass(body, [&](int, int, double mass) {
     add_block(
-        body, row, column, *place++, [=](int i, int j) { return i == j ? factor * mass : 0.0; }, values);
+        *place++, [=](int i, int j) { return i == j ? factor * mass : 0.0; }, values);
   });
   if (model.springs.size() == 0) return;
   place = model.mass_places.data();
@@ -250,7 +261,7 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
     const BlockPlace& own = *place++;
     if (row != column) return;
     add_block(
-        body, row, row, own, [&](int i, int j) { return i == j ? model.springs(i, row) : 0.0; }, values);
+        own, [&](int i, int j) { return i == j ? model.springs(i, row) : 0.0; }, values);
   });
 }
 

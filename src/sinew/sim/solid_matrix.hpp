@@ -13,8 +13,7 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
               double* values);
 
 /// Adds the symmetric part of the tangent of a pressure. The rest acts only along the open edge of the loaded surface.
-void add_pressure_tangent(const SolidModel& model, const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x,
-                          double* values);
+void add_pressure_tangent(const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x, double* values);
 /// The antisymmetric part, over the unknowns of the faces' free rim: elsewhere neighbouring faces cancel.
 Eigen::MatrixXd pressure_skew(const SolidModel& model, const SolidLoadModel& load, double factor,
                               const Eigen::Matrix3Xd& x);

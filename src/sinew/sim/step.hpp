@@ -29,17 +29,31 @@ Command between(Command from, const Command& to, double part);
 /// Seconds spent, summed over the iterations of a step and all threads.
 struct StageTimes {
   double forces = 0.0, assembly = 0.0, factor = 0.0, compliance = 0.0, rods = 0.0, solve = 0.0;
+  double step = 0.0;  ///< from its beginning to its end, halved attempts included: all stages and what is between them
 
-  StageTimes& operator+=(const StageTimes& other) {
-    forces += other.forces;
-    assembly += other.assembly;
-    factor += other.factor;
-    compliance += other.compliance;
-    rods += other.rods;
-    solve += other.solve;
-    return *this;
-  }
+  StageTimes& operator+=(const StageTimes& other);
 };
+
+/// What takes the time of a step.
+struct Stage {
+  const char* name;
+  double StageTimes::*seconds;
+  const char* what;
+};
+inline constexpr Stage kStages[] = {
+    {"forces", &StageTimes::forces, "elastic and viscous forces of volumes"},
+    {"assembly", &StageTimes::assembly, "tangents of their elements"},
+    {"factor", &StageTimes::factor, "their factorisation, rows of couplings included"},
+    {"compliance", &StageTimes::compliance, "W of volumes (11)"},
+    {"rods", &StageTimes::rods, "forces, tangents and rows of rods"},
+    {"solve", &StageTimes::solve, "rods condensed, the border solved (12), volumes corrected"},
+    {"step", &StageTimes::step, "the whole step"},
+};
+
+inline StageTimes& StageTimes::operator+=(const StageTimes& other) {
+  for (const Stage& stage : kStages) this->*stage.seconds += other.*stage.seconds;
+  return *this;
+}
 
 struct StepReport {
   Status status = Status::rest;

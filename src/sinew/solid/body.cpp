@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -81,6 +82,15 @@ void add_mass(Body& body, MassMatrix kind, std::optional<double> total) {
   body.masses = body.mass * Eigen::VectorXd::Ones(body.nodes());
 }
 
+/// Nodes of an element of a batch, in an order of its own.
+void set_nodes(TetBatch& batch, int i, const Cell& cell, const ElementRest& rest, const std::array<int, 4>& order) {
+  for (int a = 0; a < 4; ++a) {
+    const int own = order[static_cast<std::size_t>(a)];
+    batch.node[a][i] = cell.node[static_cast<std::size_t>(own)];
+    for (int axis = 0; a < 3 && axis < 3; ++axis) batch.gradient[a][axis][i] = rest.gradients_at(0)(axis, own);
+  }
+}
+
 /// Gathers the linear tetrahedra of the corotational law.
 void add_batches(Body& body) {
   for (int e = 0; e < body.elements(); ++e) {
@@ -94,14 +104,11 @@ void add_batches(Body& body) {
     const int i = batch.count++;
     const ElementRest rest = body.element(e);
     const double volume = rest.volumes[0];
-    for (int a = 0; a < 3; ++a) {
-      for (int axis = 0; axis < 3; ++axis) batch.gradient[a][axis][i] = rest.gradients_at(0)(axis, a);
-    }
+    set_nodes(batch, i, body.cells[static_cast<std::size_t>(e)], rest, {0, 1, 2, 3});
     batch.mu[i] = volume * law->moduli.mu;
     batch.lambda[i] = volume * law->moduli.lambda;
     batch.viscous_mu[i] = volume * body.of(e).viscosity.mu;
     batch.viscous_lambda[i] = volume * body.of(e).viscosity.lambda;
-    for (int a = 0; a < 4; ++a) batch.node[a][i] = body.cells[static_cast<std::size_t>(e)].node[a];
     batch.cell[i] = e;
   }
 }
@@ -124,6 +131,20 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
     for (int axis = 0; axis < 3; ++axis) body.unknown(axis, node) = held(axis, node) ? -1 : body.unknowns++;
   }
   return body;
+}
+
+void sort_batches(Body& body, const std::vector<int>& rank) {
+  for (TetBatch& batch : body.batches) {
+    for (int i = 0; i < batch.count; ++i) {
+      const Cell& cell = body.cells[static_cast<std::size_t>(batch.cell[i])];
+      std::array<int, 4> order = {0, 1, 2, 3};
+      std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        return rank[static_cast<std::size_t>(cell.node[static_cast<std::size_t>(a)])] <
+               rank[static_cast<std::size_t>(cell.node[static_cast<std::size_t>(b)])];
+      });
+      set_nodes(batch, i, cell, body.element(batch.cell[i]), order);
+    }
+  }
 }
 
 void at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal, Eigen::VectorXd& u) {

@@ -63,6 +63,9 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
                std::vector<int> material, const Eigen::Array<bool, 3, Eigen::Dynamic>& held,
                MassMatrix kind = MassMatrix::lumped, std::optional<double> total = {});
 
+/// Renumbers the nodes within each batch's elements, those of low rank first.
+void sort_batches(Body& body, const std::vector<int>& rank);
+
 /// What a time step needs to know about its start.
 struct StepStart {
   Eigen::Matrix3Xd x, v;  ///< [m], [m/s] at the start

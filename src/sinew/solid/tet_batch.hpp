@@ -2,6 +2,8 @@
 // potential (solid/elasticity) for elements of constant strain, written out for registers. README.md derives them.
 #pragma once
 
+#include <cstdint>
+
 namespace sinew::solid {
 
 inline constexpr int kBatch = 8;
@@ -29,6 +31,11 @@ struct TetStiffness {
   Eight block[10][9];  ///< [N/m]
 };
 
+/// Where the blocks of each element go: entry (i, j) of one is added at i + 4 j from there, and a zero at 3 + 4 j.
+struct TetPlaces {
+  std::uint32_t block[10][kBatch];
+};
+
 /// One set of kernels (linalg/kernels). Both return a bit for each element whose rotation they did not find, flat or
 /// inside out, say; what they give of those means nothing.
 struct TetKernels {
@@ -37,6 +44,8 @@ struct TetKernels {
   unsigned (*forces)(const TetBatch& batch, const double* x, const double* start, double rate, TetForces& forces);
   /// The definite tangent: that of linear elasticity in the frame R, and of the viscous forces without their stress.
   unsigned (*stiffness)(const TetBatch& batch, const double* x, double rate, TetStiffness& stiffness);
+  /// Adds the blocks of all eight elements.
+  void (*add)(const TetStiffness& stiffness, const TetPlaces& places, double* numbers);
 };
 
 const TetKernels& tet_kernels();

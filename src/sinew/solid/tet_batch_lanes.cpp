@@ -185,8 +185,33 @@ unsigned stiffness(const TetBatch& batch, const double* x, double rate, TetStiff
   });
 }
 
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
+void add_four(double* p, const Four& v) { *reinterpret_cast<Four*>(p) += v; }
+
+/// Columns of blocks come as one number of eight elements after the other, and go as three numbers of one element.
+void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers) {
+  for (int k = 0; k < 10; ++k) {
+    for (int column = 0; column < 3; ++column) {
+      const Eight* rows = stiffness.block[k] + 3 * column;
+      for (int first = 0; first < kBatch; first += 4) {
+        const Four a = four(rows[0] + first), b = four(rows[1] + first), c = four(rows[2] + first), none = {};
+        const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+        const Four c02 = __builtin_shufflevector(c, none, 0, 4, 2, 6),
+                   c13 = __builtin_shufflevector(c, none, 1, 5, 3, 7);
+        double* const own = numbers + 4 * column;
+        const std::uint32_t* at = places.block[k] + first;
+        add_four(own + at[0], __builtin_shufflevector(ab02, c02, 0, 1, 4, 5));
+        add_four(own + at[1], __builtin_shufflevector(ab13, c13, 0, 1, 4, 5));
+        add_four(own + at[2], __builtin_shufflevector(ab02, c02, 2, 3, 6, 7));
+        add_four(own + at[3], __builtin_shufflevector(ab13, c13, 2, 3, 6, 7));
+      }
+    }
+  }
+}
+
 }  // namespace
 
-const TetKernels SINEW_KERNELS{SINEW_NAME, forces, stiffness};
+const TetKernels SINEW_KERNELS{SINEW_NAME, forces, stiffness, add};
 
 }  // namespace sinew::solid
