@@ -47,6 +47,8 @@ class Cholmod {
     return common_.status == CHOLMOD_OK;
   }
   double entries() const { return common_.lnz; }
+  /// [bytes] of a supernodal factor.
+  double memory() const { return static_cast<double>(factor_->xsize * sizeof(double) + factor_->ssize * sizeof(int)); }
 
  private:
   cholmod_common common_{};

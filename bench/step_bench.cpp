@@ -18,9 +18,11 @@
 #include "cholmod.hpp"
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/linalg/kernels.hpp"
-#include "sinew/sim/free_motion.hpp"
+#include "sinew/sim/inverse.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/solid_matrix.hpp"
+#include "sinew/sim/step_context.hpp"
 #include "support/robots.hpp"
 
 namespace sinew {
@@ -35,89 +37,147 @@ double now() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 struct Measured {
   int cells = 0, unknowns = 0, rows = 0;
-  double step = std::numeric_limits<double>::infinity(), two = step, reference = step;  ///< [ms], smallest
-  StageTimes stages;                                                                    ///< [s] of the fastest step
+  int turns = 0;
+  double step = kNever, two = kNever, single = kNever, inverse = kNever, reference = kNever;  ///< [ms], smallest
+  StageTimes stages;  ///< [s] of the fastest step
 };
 
-/// Whole steps from the same few states and factorisations of their matrix, in turns.
-Measured measure(const Model& model, int turns) {
-  Measured result;
-  Workspace workspace = make_workspace(model), shared = make_workspace(model, 2);
+/// A state away from rest.
+State under_way(const Model& model, Workspace& workspace) {
   State state = initial_state(model);
-  for (int i = 0; i < 10; ++i) {  // away from rest
+  for (int i = 0; i < 10; ++i) {
     if (!accepted(advance(model, workspace, state).status)) throw std::runtime_error("the run stopped");
   }
+  return state;
+}
+
+/// Times what is done to a copy of a state.
+template <class Work>
+double timed(const State& from, State& state, const Work& work) {
+  state = from;
+  const double start = now();
+  if (!accepted(work(state).status)) throw std::runtime_error("the run stopped");
+  return now() - start;
+}
+
+linalg::SparseFactor::Matrix matrix_of(const Model& model, const State& state) {
   const StepContext context = make_context(model, state, command_at(model, state.time), model.scene.time.step);
   linalg::SparseFactor factor(model.solids[0].fronts);
   assemble(model.solids[0], context.solids[0], state.solids[0].x, solid::Tangent::definite, factor.values());
-  const linalg::SparseFactor::Matrix A = factor.assembled();
+  return factor.assembled();
+}
+
+/// The scene with cables that forces pull, and the point of the body that they are to move: farthest from its origin.
+Scene with_effector(Scene scene, const Vec3& tip) {
+  for (auto& [name, actuator] : scene.actuators) {
+    actuator.driven = Driven::force;
+    actuator.drive = Table{{0.0}, {0.1}};
+  }
+  test::add_effector(scene, tip);
+  return scene;
+}
+
+/// Of this many tetrahedra factors in single precision are worth a try.
+constexpr int kLarge = 5000;
+
+/// Whole steps from the same state and factorisations of its matrix, in turns; then steps of two threads, in single
+/// precision and inverse ones.
+Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, int turns) {
+  Measured result;
+  const Model model = build(scene, meshes);
+  Workspace workspace = make_workspace(model);
+  const State state = under_way(model, workspace);
+  State again = state;
+  const linalg::SparseFactor::Matrix A = matrix_of(model, state);
   Cholmod reference(A, Cholmod::Ordering::metis);
   result.cells = model.solids[0].body.elements();
   result.unknowns = model.solids[0].body.unknowns;
   result.rows = model.rows;
-  State again = state;
-  for (int i = 0; i < turns; ++i) {
-    again = state;
+  result.turns = turns;
+  const auto factor = [&] {
     const double start = now();
-    const StepReport report = advance(model, workspace, again, Evaluation::motion);
-    const double middle = now();
-    if (!accepted(report.status)) throw std::runtime_error("the run stopped");
     if (!reference.factor()) throw std::runtime_error("not positive definite");
-    const double end = now();
-    if (middle - start < result.step) result.stages = report.times;
-    result.step = std::min(result.step, middle - start);
-    result.reference = std::min(result.reference, end - middle);
-  }
+    return now() - start;
+  };
   for (int i = 0; i < turns; ++i) {
-    again = state;
-    const double before = now();
-    advance(model, shared, again, Evaluation::motion);
-    result.two = std::min(result.two, now() - before);
+    StepReport report;
+    const double own =
+        timed(state, again, [&](State& at) { return report = advance(model, workspace, at, Evaluation::motion); });
+    if (own < result.step) result.stages = report.times;
+    result.step = std::min(result.step, own);
+    result.reference = std::min(result.reference, factor());
+  }
+  Workspace shared = make_workspace(model, 2);
+  for (int i = 0; i < turns; ++i)
+    result.two = std::min(
+        result.two, timed(state, again, [&](State& at) { return advance(model, shared, at, Evaluation::motion); }));
+  if (result.cells >= kLarge) {
+    Scene floats = scene;
+    floats.newton.precision = linalg::Precision::float32;
+    const Model small = build(floats, meshes);
+    Workspace own = make_workspace(small);
+    for (int i = 0; i < turns; ++i)
+      result.single = std::min(
+          result.single, timed(state, again, [&](State& at) { return advance(small, own, at, Evaluation::motion); }));
+  }
+  if (scene.rods[0].second.cable == Cable::geometric) return result;
+  const Model inverse = build(with_effector(scene, tip), meshes);
+  Workspace own = make_workspace(inverse);
+  const State start = under_way(inverse, own);
+  const Goal goal = {{output_position(inverse, start, inverse.outputs[0]) + Vec3(0, 0.1e-3, -0.1e-3)},
+                     std::vector<double>(inverse.actuators.size(), 0.0),
+                     std::vector<double>(inverse.actuators.size(), 10.0)};
+  for (int i = 0; i < turns; ++i) {
+    result.inverse = std::min(result.inverse, timed(start, again, [&](State& at) {
+                                return inverse_step(inverse, own, goal, scene.time.step, at, Evaluation::motion).step;
+                              }));
+    result.reference = std::min(result.reference, factor());
   }
   return result;
 }
 
 void print(const std::string& name, const Measured& own) {
   const StageTimes& t = own.stages;
+  const auto beside = [&own](double time) {
+    return time < kNever ? fmt::format("{:.3f} | {:.2f}", time, time / own.reference) : std::string(" | ");
+  };
   fmt::print(
-      "| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.3f} | {:.2f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | "
+      "| {} | {} | {} | {} | {} | {:.3f} | {} | {} | {:.3f} | {:.2f} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | "
       "{:.3f} |\n",
-      name, own.cells, own.unknowns, own.rows, own.step, own.reference, own.step / own.reference, own.two,
-      own.step / own.two, 1e3 * t.forces, 1e3 * t.assembly, 1e3 * t.factor, 1e3 * t.compliance, 1e3 * t.rods,
-      1e3 * t.solve);
+      name, own.cells, own.unknowns, own.rows, own.turns, own.reference, beside(own.step), beside(own.inverse), own.two,
+      own.step / own.two, beside(own.single), 1e3 * t.forces, 1e3 * t.assembly, 1e3 * (t.factor + t.compliance),
+      1e3 * t.rods, 1e3 * t.solve);
   std::fflush(stdout);
 }
 
-int run_all(const std::filesystem::path& meshes, const std::string& wanted, int turns) {
-  fmt::print("Registers: {}. Smallest of {} turns, ms.\n\n", linalg::kernels().name, turns);
+/// `most`: turns of the largest.
+int run_all(const std::filesystem::path& meshes, const std::string& wanted, int turns, int most) {
+  fmt::print("Registers: {}. Smallest of all turns, ms.\n\n", linalg::kernels().name);
   fmt::print(
-      "| scene | cells | unknowns | rows | step | R | step / R | 2 threads | faster | forces | assembly | factor | W | "
-      "rods | border |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const auto go = [&](const std::string& name, const auto& model, int count) {
-    if (name.find(wanted) == std::string::npos) return;
-    print(name, measure(model(), count));
+      "| scene | cells | unknowns | rows | turns | R | step | step / R | inverse | inverse / R | 2 threads | faster | "
+      "single | single / R | forces | assembly | factor, W | rods | border |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const auto go = [&](const std::string& name, const Scene& scene, const Vec3& tip, const MeshReader& reader,
+                      int count) {
+    if (name.find(wanted) != std::string::npos) print(name, measure(scene, tip, reader, count));
   };
   if (std::filesystem::exists(meshes / "trunk.vtk")) {
-    go(
-        "finger, 7 points", [&] { return build(finger(meshes, 6, 7, Cable::cosserat), io::read_mesh); }, turns);
-    go(
-        "finger, 15 points", [&] { return build(finger(meshes, 15, 15, Cable::cosserat), io::read_mesh); }, turns);
-    go(
-        "finger, geometric", [&] { return build(finger(meshes, 1, 15, Cable::geometric), io::read_mesh); }, turns);
-    go(
-        "trunk, 10 points", [&] { return build(trunk(meshes, 10), io::read_mesh); }, turns);
-    go(
-        "trunk, 21 points", [&] { return build(trunk(meshes, 21), io::read_mesh); }, turns);
+    const Vec3 finger_tip(-103e-3, 7e-3, 7e-3), trunk_tip(0, 0, 195e-3);
+    go("finger, 7 points", finger(meshes, 6, 7, Cable::cosserat), finger_tip, io::read_mesh, turns);
+    go("finger, 15 points", finger(meshes, 15, 15, Cable::cosserat), finger_tip, io::read_mesh, turns);
+    go("finger, geometric", finger(meshes, 1, 15, Cable::geometric), finger_tip, io::read_mesh, turns);
+    go("trunk, 10 points", trunk(meshes, 10), trunk_tip, io::read_mesh, turns);
+    go("trunk, 21 points", trunk(meshes, 21), trunk_tip, io::read_mesh, turns);
   } else {
     fmt::print(stderr, "No finger.vtk and trunk.vtk in {}: give their folder\n", meshes.string());
   }
   for (const int thousands : {8, 32, 128})
-    go(
-        fmt::format("block, {} k", thousands), [&] { return build(block(), block_of(1000 * thousands)); },
-        std::max(5, turns * 4 / thousands));
+    go(fmt::format("block, {} k", thousands), block(), Vec3(50e-3, 5e-3, 5e-3), block_of(1000 * thousands),
+       thousands > 100 ? std::max(5, most) : turns);
   return 0;
 }
 
@@ -131,7 +191,8 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   const std::string meshes = argc > 1 ? argv[1] : SINEW_SHARED_MESHES, wanted = argc > 2 ? argv[2] : "";
   try {
-    return sinew::run_all(meshes, wanted, argc > 3 ? std::atoi(argv[3]) : 200);
+    const int turns = argc > 3 ? std::atoi(argv[3]) : 200;
+    return sinew::run_all(meshes, wanted, turns, argc > 4 ? std::atoi(argv[4]) : turns / 20);
   } catch (const std::exception& error) {
     fmt::print(stderr, "step_bench: {}\n", error.what());
     return 1;

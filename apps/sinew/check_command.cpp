@@ -55,33 +55,31 @@ void print_rod(const RodModel& model) {
     fmt::print("  its sections stay within {:.3g} mm of the path\n", 1e3 * model.path_deviation);
 }
 
-void print_coupling(const Model& model, std::size_t number) {
-  const CouplingFacts& facts = model.couplings[number];
-  if (const Tie* tie = std::get_if<Tie>(&model.scene.couplings[number])) {
-    const std::string holder = tie->solid   ? "solid " + *tie->solid
-                               : tie->other ? "rod " + *tie->other
-                               : tie->frame ? "frame " + *tie->frame
-                                            : "the ground";
-    fmt::print("coupling {}: rod {} held by {}\n", number, tie->rod, holder);
-    if (facts.outside > 0) {
-      fmt::print("  the point lies {:.3g} mm outside the mesh and is tied to the nearest element\n",
-                 1e3 * facts.farthest);
-    }
-    return;
-  }
-  const Slide& slide = std::get<Slide>(model.scene.couplings[number]);
-  fmt::print("coupling {}: rod {} in solid {}: {} of {} points kept\n", number, slide.rod, slide.solid, facts.kept,
-             facts.asked);
+void print(const Tie& tie, const CouplingFacts& facts) {
+  const std::string holder = tie.solid   ? "solid " + *tie.solid
+                             : tie.other ? "rod " + *tie.other
+                             : tie.frame ? "frame " + *tie.frame
+                                         : "the ground";
+  fmt::print("rod {} held by {}\n", tie.rod, holder);
+  if (facts.outside > 0)
+    fmt::print("  the point lies {:.3g} mm outside the mesh and is tied to the nearest element\n",
+               1e3 * facts.farthest);
+}
+
+void print(const Slide& slide, const CouplingFacts& facts) {
+  fmt::print("rod {} in solid {}: {} of {} points kept\n", slide.rod, slide.solid, facts.kept, facts.asked);
   if (facts.outside > 0) {
     fmt::print("  {} of them lie outside the mesh, up to {:.3g} mm, and are tied to the nearest element\n",
                facts.outside, 1e3 * facts.farthest);
   }
-  if (!facts.no_unknown.empty()) {
-    fmt::print("  dropped, nothing there can move: s = {}\n", list_mm(facts.no_unknown));
-  }
-  if (!facts.redundant.empty()) {
+  if (!facts.no_unknown.empty()) fmt::print("  dropped, nothing there can move: s = {}\n", list_mm(facts.no_unknown));
+  if (!facts.redundant.empty())
     fmt::print("  dropped, the elements there already follow their other points: s = {}\n", list_mm(facts.redundant));
-  }
+}
+
+void print_coupling(const Model& model, std::size_t number) {
+  fmt::print("coupling {}: ", number);
+  std::visit([&](const auto& own) { print(own, model.couplings[number]); }, model.scene.couplings[number]);
 }
 
 }  // namespace
@@ -104,7 +102,7 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
   }
   for (const SolidModel& solid : model.solids) print_solid(solid);
   for (const RodModel& rod : model.rods) print_rod(rod);
-  for (const CableModel& cable : model.cables) {
+  for (const GeometricCableModel& cable : model.cables) {
     fmt::print("rod {}: a geometric cable of {:.5g} mm, without stiffness or mass\n", cable.name,
                1e3 * cable.cable.length);
   }

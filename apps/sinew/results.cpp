@@ -53,7 +53,7 @@ Json sizes_json(const Model& model) {
         {"length_m", rod.rod.length()}, {"sections", rod.rod.count()}, {"coordinates", rod.rod.coordinates()}};
     unknowns += rod.rod.strain_coordinates();
   }
-  for (const CableModel& cable : model.cables)
+  for (const GeometricCableModel& cable : model.cables)
     rods[cable.name] = {{"length_m", cable.cable.length}, {"sections", 0}, {"coordinates", cable.cable.coordinates()}};
   return {{"solids", solids},
           {"rods", rods},

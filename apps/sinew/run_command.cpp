@@ -53,7 +53,7 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
       warnings.push_back(fmt::format("actuators.{}: the tendon pushes with {:.3g} N; a real one would go slack",
                                      model.actuators[i].name, -state.actuators[i]));
   }
-  for (const CableModel& cable : model.cables) {
+  for (const GeometricCableModel& cable : model.cables) {
     const double tension = state.lambda[cable.length_row];
     if (tension < 0.0) {
       warnings.push_back(fmt::format("rods.{}: the geometric cable pushes with {:.3g} N; a real one would go slack",
@@ -139,24 +139,28 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   return end == RunEnd::done ? kDone : end == RunEnd::stopped ? kNumericalStop : kInterrupted;
 }
 
+/// The scene of a recording, as it was when it was recorded.
+LoadedScene load_recorded(const io::RecordingHeader& header, const std::filesystem::path& path) {
+  if (header.state_layout != kStateLayout)
+    throw InputError({path.string(), 0, "", "", "holds states of another version of the engine",
+                      "run the scene again, or use the version of Sinew that recorded it, " + header.program_version});
+  LoadedScene loaded = load(io::parse_scene(header.scene_text, header.scene_name, header.scene_folder));
+  if (loaded.inputs_hash != header.inputs_hash)
+    throw InputError({path.string(), 0, "", "", "the scene's mesh files are not the ones this run was made with",
+                      "restore them in " + header.scene_folder + ", or start a new run"});
+  if (header.state_size != pack(initial_state(loaded.model)).size())
+    throw InputError({path.string(), 0, "", "", "holds states of another model of its scene",
+                      "run the scene again, or use the version of Sinew that recorded it, " + header.program_version});
+  return loaded;
+}
+
 int resume(const RunOptions& options) {
   const std::filesystem::path path = recording_path(options.resume);
   const io::Recording recording = io::read_recording(path);
-  const LoadedScene loaded =
-      load(io::parse_scene(recording.header.scene_text, recording.header.scene_name, recording.header.scene_folder));
-  if (loaded.inputs_hash != recording.header.inputs_hash) {
-    throw InputError({path.string(), 0, "", "", "the scene's mesh files are not the ones this run was made with",
-                      "restore them in " + recording.header.scene_folder + ", or start a new run"});
-  }
+  const LoadedScene loaded = load_recorded(recording.header, path);
   if (recording.steps.empty())
     throw InputError({path.string(), 0, "", "", "holds no finished step", "start the run again"});
-  State state;
-  try {
-    state = unpack(loaded.model, recording.steps.back().state);
-  } catch (const std::invalid_argument&) {
-    throw InputError({path.string(), 0, "", "", "holds states of another version of the engine",
-                      "start the run again with this version"});
-  }
+  const State state = unpack(loaded.model, recording.steps.back().state);
   if (!recording.torn && state.grid >= grid_steps(loaded.model.scene) &&
       std::filesystem::exists(options.resume / "report.json")) {
     fmt::print("The run in {} is complete, up to {}.\n", options.resume.string(), when(loaded.model, state));
@@ -191,6 +195,7 @@ int run_scene(const RunOptions& options) {
   header.scene_name = loaded.file.path.filename().string();
   header.scene_folder = std::filesystem::absolute(loaded.model.scene.folder).lexically_normal().string();
   header.inputs_hash = loaded.inputs_hash;
+  header.state_layout = kStateLayout;
   header.state_size = pack(start).size();
   header.signal_names = signal_names(loaded.model);
   io::RecordingWriter writer = io::RecordingWriter::create(path, header);
@@ -200,14 +205,7 @@ int run_scene(const RunOptions& options) {
 
 int export_run(const std::filesystem::path& folder) {
   const io::Recording recording = io::read_recording(recording_path(folder));
-  const LoadedScene loaded =
-      load(io::parse_scene(recording.header.scene_text, recording.header.scene_name, recording.header.scene_folder));
-  if (loaded.inputs_hash != recording.header.inputs_hash ||
-      recording.header.state_size != pack(initial_state(loaded.model)).size()) {
-    throw InputError({recording_path(folder).string(), 0, "", "",
-                      "the scene's mesh files are not the ones this run was made with",
-                      "restore them in " + recording.header.scene_folder});
-  }
+  const LoadedScene loaded = load_recorded(recording.header, recording_path(folder));
   RunSummary summary;
   const bool whole =
       !recording.steps.empty() && recording.steps.back().time >= run_duration(loaded.model.scene) * (1.0 - 1e-9);

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "run_folder.hpp"
+#include "sinew/io/recording.hpp"
 
 namespace sinew::test {
 namespace {
@@ -203,6 +204,21 @@ TEST_F(Resume, AfterTheMeshChangedIsRefused) {
   EXPECT_EQ(sinew(scene.resume("changed")).code, 2) << "no mesh at all";
   write_file(scene / "meshes/finger.vtk", finger_mesh());
   expect_resumed_to_reference("changed");
+}
+
+TEST_F(Resume, OfStatesLaidOutOtherwiseIsRefused) {
+  std::filesystem::create_directories(scene / "other");
+  const io::Recording whole = io::read_recording(scene / "reference/run.sinew");
+  io::RecordingHeader header = whole.header;
+  ++header.state_layout;
+  io::RecordingWriter::create(scene / "other/run.sinew", header).append(whole.steps[0]);
+  for (const Arguments& command : {scene.resume("other"), scene.export_of("other")}) {
+    const Finished done = sinew(command);
+    SCOPED_TRACE(said(done));
+    EXPECT_EQ(done.code, 2);
+    EXPECT_NE(done.err.find("holds states of another version of the engine"), std::string::npos);
+    EXPECT_NE(done.err.find("run the scene again"), std::string::npos);
+  }
 }
 
 TEST_F(Resume, UsesTheSceneOfTheRecordingNotTheFile) {

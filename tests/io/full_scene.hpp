@@ -7,7 +7,7 @@ inline constexpr const char* full_scene = R"(# A finger with one cable.
 title: A finger pulled by one cable
 time: {step: 10 ms, duration: 2 s}
 gravity: [0, -9.81, 0]
-newton: {iterations: converged, limit: 20, tolerance: 1e-10}
+newton: {iterations: converged, limit: 20, tolerance: 1e-10, precision: single}
 view: {interval: 20 ms}
 frames:
   hand:

@@ -40,6 +40,7 @@ RecordingHeader header() {
           .scene_name = "finger",
           .scene_folder = "/scenes",
           .inputs_hash = content_hash("inputs"),
+          .state_layout = 5,
           .state_size = 9,
           .signal_names = {"tip.x", "pull.force"}};
 }
@@ -121,9 +122,9 @@ TEST_F(RecordingFile, has_the_documented_bytes) {
   RecordingWriter::create(path_, h).append(
       {.time = -0.0, .status = "ok", .newton = 3, .residual = 1.0, .violation = 2.0, .signals = {}, .state = {0.5}});
   const std::string bytes = bytes_of(path_);
-  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 4 + 8 + 8 + 8));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x02\0\0\0\0\0\0\0", 16));
-  EXPECT_EQ(bytes.substr(24, 8), std::string("\x39\0\0\0\0\0\0\0", 8));                 // payload of the header
+  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 24) + 16 + (8 + 10 + 4 + 8 + 8 + 8));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x03\0\0\0\0\0\0\0", 16));
+  EXPECT_EQ(bytes.substr(24, 8), std::string("\x41\0\0\0\0\0\0\0", 8));                 // payload of the header
   EXPECT_EQ(bytes.substr(32, 9), std::string("\x01\0\0\0\0\0\0\0v", 9));                // program_version
   EXPECT_EQ(bytes.substr(bytes.size() - 46, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
   EXPECT_EQ(bytes.substr(bytes.size() - 38, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
@@ -297,8 +298,10 @@ TEST_F(RecordingFile, refuses_what_is_no_recording) {
   EXPECT_THAT(message_of("time,status,newton\n0,converged,1\n"), HasSubstr("is not a Sinew recording"));
   write(path_, 1);
   std::string newer = bytes_of(path_);
-  newer[8] = 3;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 3, and this program reads format 2"));
+  newer[8] = 4;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 4, and this program reads format 3"));
+  newer[8] = 2;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 2, and this program reads format 3"));
   newer[8] = 0;
   EXPECT_THAT(message_of(newer), HasSubstr("damaged"));
   EXPECT_THROW(read_recording(folder_), InputError);

@@ -36,6 +36,7 @@ TEST(SceneFile, ReadsTheWholeScene) {
   EXPECT_EQ(scene.newton.iterations, 0);
   EXPECT_EQ(scene.newton.limit, 20);
   EXPECT_EQ(scene.newton.tolerance, 1e-10);
+  EXPECT_EQ(scene.newton.precision, linalg::Precision::float32);
   EXPECT_EQ(scene.view.interval, 0.02);
 
   ASSERT_EQ(scene.frames.size(), 1u);

@@ -42,33 +42,20 @@ RecordedStep row(double time, std::vector<double> signals, std::string status = 
           .state = {}};
 }
 
-TEST_F(SignalsCsv, has_the_stated_columns_and_digits) {
-  SignalsCsvWriter writer(path_, {"tip.x", "pull.force"});
-  EXPECT_EQ(text(), "time,status,newton,tip.x,pull.force\n");
-  writer.append(row(0.0, {0.1, -0.0}));
-  EXPECT_EQ(text(), "time,status,newton,tip.x,pull.force\n0,converged,3,0.10000000000000001,-0\n");  // at once
-  writer.append(row(0.01, {1e-300, 12345678.0}, "odd, \"status\""));
-  EXPECT_EQ(text(),
-            "time,status,newton,tip.x,pull.force\n0,converged,3,0.10000000000000001,-0\n"
-            "0.01,\"odd, \"\"status\"\"\",3,1e-300,12345678\n");
+Recording recording_of(std::vector<std::string> names, std::vector<RecordedStep> steps) {
+  Recording recording;
+  recording.header.signal_names = std::move(names);
+  recording.steps = std::move(steps);
+  return recording;
 }
 
-TEST_F(SignalsCsv, a_recording_gives_the_same_table_as_the_stream) {
-  Recording recording;
-  recording.header.signal_names = {"a.x", "a.y"};
-  {
-    SignalsCsvWriter writer(path_, recording.header.signal_names);
-    for (int k = 0; k < 20; ++k) {
-      recording.steps.push_back(row(0.1 * k, {1.0 / (k + 1), -7.0 * k}));
-      writer.append(recording.steps.back());
-    }
-  }
-  const std::string streamed = text();
-  write_signals_csv(path_, recording);
-  EXPECT_EQ(text(), streamed);
-  recording.steps.resize(2);
-  write_signals_csv(path_, recording);  // a shorter one leaves nothing of the longer
-  EXPECT_EQ(text(), streamed.substr(0, text().size()));
+TEST_F(SignalsCsv, has_the_stated_columns_and_digits) {
+  const std::vector<RecordedStep> steps = {row(0.0, {0.1, -0.0}), row(0.01, {1e-300, 12345678.0}, "odd, \"status\"")};
+  write_signals_csv(path_, recording_of({"tip.x", "pull.force"}, steps));
+  const std::string first = "time,status,newton,tip.x,pull.force\n0,converged,3,0.10000000000000001,-0\n";
+  EXPECT_EQ(text(), first + "0.01,\"odd, \"\"status\"\"\",3,1e-300,12345678\n");
+  write_signals_csv(path_, recording_of({"tip.x", "pull.force"}, {steps[0]}));  // leaves nothing of the longer one
+  EXPECT_EQ(text(), first);
 }
 
 TEST_F(SignalsCsv, every_double_is_read_back_exactly) {
@@ -78,8 +65,9 @@ TEST_F(SignalsCsv, every_double_is_read_back_exactly) {
     const double value = std::bit_cast<double>(random());
     if (std::isfinite(value)) values.push_back(value);
   }
-  SignalsCsvWriter writer(path_, {"v"});
-  for (const double value : values) writer.append(row(value, {value}));
+  std::vector<RecordedStep> steps;
+  for (const double value : values) steps.push_back(row(value, {value}));
+  write_signals_csv(path_, recording_of({"v"}, steps));
   std::istringstream lines(text());
   std::string line;
   std::getline(lines, line);
@@ -102,16 +90,14 @@ TEST_F(SignalsCsv, has_a_point_whatever_the_locale) {
   const std::locale old_cpp = std::locale::global(std::locale(std::locale::classic(), new Comma));
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"})
     if (std::setlocale(LC_ALL, name)) break;  // (the C library's, where one is installed)
-  SignalsCsvWriter(path_, {"v"}).append(row(0.5, {1234.5}));
+  write_signals_csv(path_, recording_of({"v"}, {row(0.5, {1234.5})}));
   std::locale::global(old_cpp);
   std::setlocale(LC_ALL, old.c_str());
   EXPECT_EQ(text(), "time,status,newton,v\n0.5,converged,3,1234.5\n");
 }
 
-TEST_F(SignalsCsv, refuses_rows_of_another_width) {
-  SignalsCsvWriter writer(path_, {"v"});
-  EXPECT_THROW(writer.append(row(0, {})), std::invalid_argument);
-  EXPECT_THROW(SignalsCsvWriter(folder_ / "no" / "where", {}), WriteError);
+TEST_F(SignalsCsv, says_where_it_cannot_write) {
+  EXPECT_THROW(write_signals_csv(folder_ / "no" / "where", recording_of({}, {})), WriteError);
 }
 
 }  // namespace

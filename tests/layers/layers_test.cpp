@@ -34,7 +34,7 @@ const Layers kMayInclude = {
     {"rod", {"lie", "linalg"}},
     {"solid", {"lie", "linalg"}},
     {"constraint", {"lie", "rod", "solid", "linalg"}},
-    {"solve", {"linalg", "threads"}},
+    {"solve", {"linalg"}},
     {"sim", {"error", "lie", "linalg", "rod", "solid", "constraint", "solve", "threads"}},
     {"io", {"error", "solid", "sim"}},
 };

@@ -166,6 +166,46 @@ TEST_P(EveryKernel, GivesWhatTheOthersGive) {
   EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
 }
 
+TEST_P(EveryKernel, SinglePrecisionIsRefinedToDouble) {
+  for (const int length : {2, 3, 9, 25}) {
+    const Bar bar = random_bar(length, 3 * length, 0.0, static_cast<unsigned>(length));
+    const Eigen::MatrixXd A = dense(bar.A), H = bar.H;
+    const auto plan = SparseFactor::make_plan(bar.A, bar.H, {}, Precision::float32);
+    SparseFactor factor(plan, *single::kernels(GetParam()));
+    ASSERT_TRUE(factor.factor(bar.A, bar.H));
+    EXPECT_EQ((dense(factor.assembled()) - A).norm(), 0.0);
+    EXPECT_EQ(factor.negative(), 0);
+    const Eigen::MatrixXd W = H * A.ldlt().solve(Eigen::MatrixXd(H.transpose()));
+    Eigen::MatrixXd compliance;
+    factor.compliance(compliance);
+    EXPECT_LT((compliance - W).norm(), 1e-3 * W.norm());
+    EXPECT_GT((compliance - W).norm(), 1e-9 * W.norm());  // it is what it says
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(A.rows()), u = Eigen::VectorXd::Random(H.rows());
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(A.rows()), y(A.rows()), back(A.rows()), r = b;
+    double before = b.norm();
+    for (int turn = 0; turn < 6; ++turn) {
+      const Eigen::VectorXd part = factor.solve(r);
+      x += part;
+      factor.subtract_product(part, r);
+      if (turn < 3) EXPECT_LT(r.norm(), 0.01 * std::exchange(before, r.norm()));
+    }
+    EXPECT_LT((A * x - b).norm(), 1e-15 * A.norm() * x.norm());
+    y.setZero();
+    factor.add_border_transposed(u, y);
+    factor.back_solve(y, back);
+    EXPECT_LT((A * back - H.transpose() * u).norm(), 1e-5 * A.norm() * back.norm());
+    Eigen::VectorXd motion(H.rows());
+    factor.half_solve(b, y);
+    factor.border_times(y, motion);
+    EXPECT_LT((motion - H * x).norm(), 1e-3 * (H * x).norm());
+  }
+}
+
+TEST(SparseFactor, APlanForDoublesDoesNotServeFloats) {
+  const Bar bar = random_bar(4, 6, 0.0, 3);
+  EXPECT_THROW(SparseFactor(SparseFactor::make_plan(bar.A, bar.H), single::kernels()), std::invalid_argument);
+}
+
 TEST_P(EveryKernel, RefusesWhatHasNoFactor) {
   Bar bar = random_bar(4, 6, 0.0, 3);
   SparseFactor factor(SparseFactor::make_plan(bar.A, bar.H), *kernels(GetParam()));
@@ -301,7 +341,12 @@ TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
   const Eigen::VectorXd x = alone.solve(b);
   Eigen::MatrixXd W, own;
   alone.compliance(W);
-  for (const int size : {2, 3}) {
+  EXPECT_LT((A.selfadjointView<Eigen::Lower>() * x - b).norm(), 1e-13 * b.norm());
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::VectorXd motion = H * alone.solve(Eigen::VectorXd(H.row(i).transpose()));
+    EXPECT_LT((motion - W.col(i)).norm(), 1e-13 * W.norm());
+  }
+  for (const int size : {2, 3, 40}) {
     threads::Crew crew(size);
     SparseFactor factor(plan);
     for (int again = 0; again < 3; ++again) {
@@ -311,6 +356,56 @@ TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
       EXPECT_EQ(factor.solve(b), x);
     }
   }
+}
+
+/// Whole nodes of up to three unknowns, whichever of them are held.
+TEST(Fronts, SlotsPutTheSameMatrixTogether) {
+  constexpr int n = 5;
+  std::mt19937 draw(7);
+  const Bar full = random_cube(n, 20);
+  std::vector<int> unknown, slots;
+  for (int i = 0; i < 3 * n * n * n; ++i) {
+    const bool held = draw() % 5 == 0;
+    unknown.push_back(held ? -1 : static_cast<int>(slots.size()));
+    if (!held) slots.push_back(4 * (i / 3) + i % 3);
+  }
+  const auto size = static_cast<int>(slots.size());
+  std::vector<Eigen::Triplet<double>> entries, rows;
+  for (Eigen::Index j = 0; j < full.A.cols(); ++j) {
+    for (Matrix::InnerIterator at(full.A, j); at; ++at) {
+      if (unknown[at.row()] >= 0 && unknown[j] >= 0) entries.emplace_back(unknown[at.row()], unknown[j], at.value());
+    }
+    for (Eigen::Index i = j + 1; i < 3 * (j / 3 + 1); ++i) {  // coordinates of a node meet
+      if (unknown[i] >= 0 && unknown[j] >= 0) entries.emplace_back(unknown[i], unknown[j], 0.5);
+    }
+  }
+  for (int r = 0; r < 20; ++r) rows.emplace_back(r, static_cast<int>(draw() % static_cast<unsigned>(size)), 1.0);
+  Bar held{Matrix(size, size), Rows(20, size)};
+  held.A.setFromTriplets(entries.begin(), entries.end());
+  held.H.setFromTriplets(rows.begin(), rows.end());
+  for (const Precision precision : {Precision::float64, Precision::float32}) {
+    SparseFactor nodes(SparseFactor::make_plan(held.A, held.H, slots, precision));
+    EXPECT_LT(nodes.plan().blocks.size(), held.A.nonZeros() / 4);
+    ASSERT_TRUE(nodes.factor(held.A, held.H));
+    EXPECT_EQ((dense(nodes.assembled()) - dense(held.A)).norm(), 0.0);
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(size), x = nodes.solve(b);
+    const double rounding = precision == Precision::float64 ? 1e-13 : 1e-5;
+    EXPECT_LT((dense(held.A) * x - b).norm(), rounding * b.norm());
+    Eigen::VectorXd r = b;
+    nodes.subtract_product(x, r);
+    EXPECT_LT((r - (b - dense(held.A) * x)).norm(), 1e-14 * b.norm());
+    Eigen::MatrixXd W;
+    nodes.compliance(W);
+    const Eigen::MatrixXd H = held.H, expected = H * dense(held.A).llt().solve(Eigen::MatrixXd(H.transpose()));
+    EXPECT_LT((W - expected).norm(), rounding * expected.norm());
+  }
+  std::vector<int> four = slots, apart = slots;
+  four[1] = four[0] + 3;
+  EXPECT_THROW(SparseFactor::make_plan(held.A, held.H, four), std::invalid_argument);
+  apart.back() = apart.front();
+  EXPECT_NO_THROW(SparseFactor::make_plan(held.A, held.H, apart));  // another node's number is no matter
+  for (int i = 0; i < size; ++i) apart[static_cast<std::size_t>(i)] = 4 * (i / 2) + i % 2;  // nodes of two strangers
+  EXPECT_THROW(SparseFactor::make_plan(held.A, held.H, apart), std::invalid_argument);
 }
 
 TEST(Fronts, UnknownsOfABorderRowMustMeet) {

@@ -31,27 +31,41 @@ Eigen::VectorXd random_signs(int n) {
 
 int stride(const Eigen::MatrixXd& A) { return static_cast<int>(A.outerStride()); }
 
+/// C - A S A^T and - A S A^T by the kernel and by Eigen, on and below the diagonal.
+void expect_update(const Kernels& kernels, int height, int columns, int depth, bool fresh,
+                   const Eigen::VectorXd& signs) {
+  const Eigen::MatrixXd A = roomy(height, depth), before = roomy(height, columns);
+  Eigen::MatrixXd C = before;
+  kernels.update(C.data(), stride(C), A.data(), stride(A), height, columns, depth, signs.data(), fresh);
+  const Eigen::MatrixXd rows = A.topLeftCorner(height, depth);
+  Eigen::MatrixXd expected = -rows * signs.asDiagonal() * rows.transpose();
+  if (!fresh) expected.leftCols(columns) += before.topLeftCorner(height, columns);
+  for (int j = 0; j < columns; ++j) {
+    EXPECT_LT((C.col(j).segment(j, height - j) - expected.col(j).tail(height - j)).norm(), 1e-13 * (depth + 1));
+    EXPECT_EQ(C.col(j).tail(kLanes).norm(), 0.0);  // behind whole lanes
+  }
+}
+
 TEST_P(Kernel, Updates) {
   for (const int depth : {0, 1, 7, 16, 20}) {
     for (const int height : {0, 1, 2, 7, 8, 9, 17, 31, 50}) {
       for (const int columns : {height, height / 2, height / 3}) {
         for (const bool fresh : {false, true}) {
-          const Eigen::MatrixXd A = roomy(height, depth), before = roomy(height, columns);
           Eigen::VectorXd signs = random_signs(depth);
           if (depth % 2 == 1) signs.setOnes();
           if (depth == 16) signs.setConstant(-1.0);
-          Eigen::MatrixXd C = before;
-          own->update(C.data(), stride(C), A.data(), stride(A), height, columns, depth, signs.data(), fresh);
-          const Eigen::MatrixXd rows = A.topLeftCorner(height, depth);
-          Eigen::MatrixXd expected = -rows * signs.asDiagonal() * rows.transpose();
-          if (!fresh) expected.leftCols(columns) += before.topLeftCorner(height, columns);
-          for (int j = 0; j < columns; ++j) {
-            EXPECT_LT((C.col(j).segment(j, height - j) - expected.col(j).tail(height - j)).norm(), 1e-13 * (depth + 1));
-            EXPECT_EQ(C.col(j).tail(kLanes).norm(), 0.0);  // behind whole lanes
-          }
+          expect_update(*own, height, columns, depth, fresh, signs);
         }
       }
     }
+  }
+}
+
+/// Chunks of rows and of depth.
+TEST_P(Kernel, UpdatesThatAreLarge) {
+  for (const bool fresh : {false, true}) {
+    expect_update(*own, 601, 500, 300, fresh, Eigen::VectorXd::Ones(300));
+    expect_update(*own, 485, 485, 260, fresh, random_signs(260));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "sinew/io/mesh_file.hpp"
+#include "sinew/sim/inverse.hpp"
 #include "support/robots.hpp"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -53,21 +54,26 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 namespace sinew::test {
 namespace {
 
-/// What five steps ask for after three, in pieces.
-long pieces(const Scene& scene, const MeshReader& meshes, Evaluation evaluation) {
-  const Model model = build(scene, meshes);
-  Workspace workspace = make_workspace(model);
-  State state = initial_state(model);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(accepted(advance(model, workspace, state).status));
+/// What five steps ask for after the first, in pieces.
+template <class Step>
+long pieces_of(const Step& step) {
+  EXPECT_TRUE(accepted(step().status));
   counted = 0;
   for (int i = 0; i < 5; ++i) {
     counting = true;
-    const StepReport report = advance(model, workspace, state, evaluation);
+    const StepReport report = step();
     counting = false;
     EXPECT_TRUE(accepted(report.status)) << to_string(report.status);
     EXPECT_FALSE(report.rotated);
   }
   return counted;
+}
+
+long pieces(const Scene& scene, const MeshReader& meshes, Evaluation evaluation, int threads = 1) {
+  const Model model = build(scene, meshes);
+  Workspace workspace = make_workspace(model, threads);
+  State state = initial_state(model);
+  return pieces_of([&] { return advance(model, workspace, state, evaluation); });
 }
 
 TEST(Memory, IsCounted) {
@@ -95,10 +101,28 @@ TEST(Memory, SolidsWithCablesAskForNone) {
 TEST(Memory, RobotsAskForNone) {
   const std::filesystem::path meshes = SINEW_SHARED_MESHES;
   EXPECT_EQ(pieces(block(), block_of(300), Evaluation::motion), 0);
+  Scene single = block();
+  single.newton.precision = linalg::Precision::float32;
+  EXPECT_EQ(pieces(single, block_of(300), Evaluation::full), 0);
   if (!std::filesystem::exists(meshes / "finger.vtk")) GTEST_SKIP() << "no finger.vtk in " << meshes;
   EXPECT_EQ(pieces(finger(meshes, 6, 7, Cable::cosserat), io::read_mesh, Evaluation::motion), 0);
   EXPECT_EQ(pieces(finger(meshes, 1, 15, Cable::geometric), io::read_mesh, Evaluation::motion), 0);
   EXPECT_EQ(pieces(trunk(meshes, 10), io::read_mesh, Evaluation::full), 0);
+}
+
+TEST(Memory, ThreadsAskForNone) { EXPECT_EQ(pieces(block(), block_of(4000), Evaluation::motion, 2), 0); }
+
+TEST(Memory, InverseStepsAskForNone) {
+  Scene scene = block();
+  scene.actuators[0].second.driven = Driven::force;
+  scene.actuators[0].second.drive = Table{{0.0}, {0.5}};
+  const Vec3 tip(50 * mm, 5 * mm, 5 * mm);
+  add_effector(scene, tip);
+  const Model model = build(scene, block_of(300));
+  Workspace workspace = make_workspace(model);
+  State state = initial_state(model);
+  const Goal goal = {{tip - 0.1 * mm * Vec3::UnitY()}, {0.0}, {2.0}};
+  EXPECT_EQ(pieces_of([&] { return inverse_step(model, workspace, goal, scene.time.step, state).step; }), 0);
 }
 
 TEST(Memory, SolidsOfAllKindsAskForNone) {

@@ -299,6 +299,25 @@ TEST(Energies, work_of_supports_and_springs_is_stored) {
   balance(solve(scene, mesh));
 }
 
+/// Batches leave out elements without a rotation, which are then put in one by one.
+TEST(Tangent, batches_are_what_their_elements_are_also_inside_out) {
+  const Model model = build(clamped(), [](const auto&) { return block_mesh(3, 2, 2, Vec3(2, 1, 1), Kind::tet4); });
+  const State start = initial_state(model);
+  const StepContext context = make_context(model, start, command_at(model, 1.0), 1.0);
+  Eigen::Matrix3Xd x = start.solids[0].x;
+  x.col(x.cols() - 1) -= Vec3(1.0, 0.3, 0.4);  // through the opposite faces of its elements
+  EXPECT_FALSE(solid::folded_cells(model.solids[0].body, x).empty());
+  SolidModel one_by_one = model.solids[0];
+  for (const solid::TetBatch& batch : one_by_one.body.batches)
+    one_by_one.body.others.insert(one_by_one.body.others.end(), batch.cell, batch.cell + batch.count);
+  one_by_one.body.batches.clear();
+  linalg::SparseFactor batches(model.solids[0].fronts), elements(model.solids[0].fronts);
+  assemble(model.solids[0], context.solids[0], x, solid::Tangent::definite, batches.values());
+  assemble(one_by_one, context.solids[0], x, solid::Tangent::definite, elements.values());
+  const linalg::SparseFactor::Matrix A = elements.assembled(), off = batches.assembled() - A;
+  EXPECT_LT(off.norm(), 1e-12 * A.norm());
+}
+
 TEST(Springs, are_in_the_tangent) {
   const Model model = build_block(on_springs(kRight));
   const State start = initial_state(model);

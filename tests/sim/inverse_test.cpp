@@ -27,11 +27,7 @@ Scene two_cables() {
             0.0);
   scene.actuators[1].second.driven = Driven::force;
   scene.actuators[1].second.drive = Table{{0.0}, {0.2}};
-  Output tip;
-  tip.solid = "body";
-  tip.point.x = Vec3(50 * mm, 5 * mm, 5 * mm);
-  scene.outputs.emplace_back("tip", tip);
-  scene.effectors = {"tip"};
+  add_effector(scene, Vec3(50 * mm, 5 * mm, 5 * mm));
   return scene;
 }
 
@@ -96,6 +92,31 @@ TEST_F(Inverse, FindsTheNearestWithinItsBounds) {
   }
 }
 
+/// What breaks before anything is steered.
+TEST_F(Inverse, FailsAsAStepDoes) {
+  state.solids[0].v.setConstant(1e200);
+  const State before = state;
+  const InverseReport report = inverse_step(model, workspace, goal_at(Vec3::Zero()), 0.02, state);
+  EXPECT_FALSE(accepted(report.step.status));
+  EXPECT_TRUE(std::isnan(report.distance));
+  EXPECT_EQ(pack(state), pack(before));
+}
+
+TEST_F(Inverse, SinglePrecisionIsSteeredToo) {
+  Scene scene = two_cables();
+  scene.newton.precision = linalg::Precision::float32;
+  const Model single = build(scene, block_of(600));
+  Workspace own = make_workspace(single);
+  State other = state;
+  for (int i = 0; i < 5; ++i) {
+    const Goal goal = goal_at(tip(state) - 0.1 * mm * Vec3::UnitY());
+    ASSERT_TRUE(accepted(inverse_step(model, workspace, goal, 0.02, state).step.status));
+    ASSERT_TRUE(accepted(inverse_step(single, own, goal, 0.02, other).step.status));
+  }
+  EXPECT_LT((tip(other) - tip(state)).norm(), 1e-4 * (tip(state) - tip(initial_state(model))).norm());
+  EXPECT_NEAR(other.actuators[0], state.actuators[0], 1e-3 * std::abs(state.actuators[0]));
+}
+
 TEST_F(Inverse, FollowsAPathUntilItIsThere) {
   const State far = [&] {
     State end = state;
@@ -122,6 +143,14 @@ TEST_F(Inverse, RefusesWhatItDoesNotKnow) {
   Workspace own = make_workspace(other);
   State start = initial_state(other);
   EXPECT_THROW(inverse_step(other, own, goal, 0.02, start), std::invalid_argument);
+  const State before = state;
+  Goal crossed = goal, nowhere = goal;
+  crossed.least[1] = 20.0;
+  crossed.most[1] = 10.0;
+  nowhere.positions[0].y() = NAN;
+  EXPECT_THROW(inverse_step(model, workspace, crossed, 0.02, state), std::invalid_argument);
+  EXPECT_THROW(inverse_step(model, workspace, nowhere, 0.02, state), std::invalid_argument);
+  EXPECT_EQ(pack(state), pack(before));
   Scene unknown = two_cables();
   unknown.effectors = {"hand"};
   EXPECT_ANY_THROW(build(unknown, block_of(600)));

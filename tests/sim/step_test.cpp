@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "sinew/error/input_error.hpp"
 #include "support/scenes.hpp"
@@ -26,6 +28,71 @@ TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
     EXPECT_EQ(pack(a.next), pack(b.next));
     state = a.next;
   }
+}
+
+/// Where this has to change, kStateLayout has to be raised.
+TEST(State, is_packed_in_the_order_that_its_layout_names) {
+  ASSERT_EQ(kStateLayout, 3u);
+  double next = 0.0;
+  const auto number = [&next] { return next += 1.0; };
+  const auto fill = [&](auto& array, int rows, int columns) {
+    array.resize(rows, columns);
+    for (double& value : array.reshaped()) value = number();
+  };
+  State state;
+  state.grid = static_cast<long>(number());
+  state.points.push_back({0.0, true});
+  number();  // on
+  state.path.stable = true;
+  number();
+  state.time = number();
+  SolidState& solid = state.solids.emplace_back();
+  fill(solid.x, 3, 2);
+  fill(solid.v, 3, 2);
+  fill(solid.reaction, 2, 1);
+  RodState& rod = state.rods.emplace_back();
+  fill(rod.q, 2, 1);
+  for (double& value : rod.turned.reshaped()) value = number();
+  fill(rod.masses, 3, 1);
+  fill(rod.velocity, 3, 1);
+  fill(rod.internal, 2, 2);
+  fill(state.cables.emplace_back().z, 2, 1);
+  state.points[0].s = number();
+  fill(state.followed, 2, 1);
+  fill(state.lambda, 2, 1);
+  state.actuators = {number()};
+  state.loads = {number()};
+  state.energies.work = number();
+  for (double* value : {&state.path.step, &state.path.rate}) *value = number();
+  state.path.count = number();
+  state.path.farthest = number();
+  fill(state.path.direction, 2, 1);
+  state.frequency = number();
+  std::vector<double> expected(static_cast<std::size_t>(next));
+  std::iota(expected.begin(), expected.end(), 1.0);
+  expected[1] = expected[2] = 1.0;  // on, stable
+  EXPECT_EQ(pack(state), expected);
+}
+
+TEST(Step, leaving_out_the_last_evaluation_changes_no_motion) {
+  Scene scene = test::cable_block();
+  scene.newton.iterations = 1;
+  const Model model = build(scene, test::read_block);
+  Workspace whole = make_workspace(model), half = make_workspace(model);
+  State full = initial_state(model), motion = full;
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(accepted(advance(model, whole, full).status));
+    ASSERT_TRUE(accepted(advance(model, half, motion, Evaluation::motion).status));
+    EXPECT_EQ(motion.solids[0].x, full.solids[0].x);
+    EXPECT_EQ(motion.solids[0].v, full.solids[0].v);
+    EXPECT_EQ(motion.rods[0].q, full.rods[0].q);
+    EXPECT_EQ(motion.rods[0].masses, full.rods[0].masses);
+    EXPECT_EQ(motion.rods[0].velocity, full.rods[0].velocity);
+    EXPECT_EQ(motion.lambda, full.lambda);
+    EXPECT_EQ(motion.actuators, full.actuators);
+    EXPECT_EQ(motion.time, full.time);
+  }
+  EXPECT_GT(full.lambda.norm(), 0.0);
 }
 
 TEST(Step, packing_and_unpacking_gives_the_same_state_and_continuation) {

@@ -32,6 +32,15 @@ inline void add_cable(Scene& scene, const std::string& name, const std::vector<V
   scene.actuators.emplace_back(name, actuator);
 }
 
+/// A point of the body as the effector `tip`, for inverse steps.
+inline void add_effector(Scene& scene, const Vec3& point) {
+  Output output;
+  output.solid = "body";
+  output.point.x = point;
+  scene.outputs.emplace_back("tip", output);
+  scene.effectors = {"tip"};
+}
+
 inline std::vector<double> evenly(double length, int count) {
   std::vector<double> at;
   for (int i = 1; i <= count; ++i) at.push_back(length * i / count);

@@ -45,6 +45,8 @@ TEST_P(EveryCrew, PassesExceptionsOn) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, EveryCrew, testing::Values(1, 2, 3, 8));
 
+TEST(Crew, HasNoMoreThanItCanCount) { EXPECT_EQ(Crew(1000).size(), Crew::kMost); }
+
 TEST(Crew, HelpersDoHelp) {
   Crew crew(2);
   std::vector<std::thread::id> by(2);

@@ -45,8 +45,7 @@ SlidingRows sliding_rows(const rod::Configuration& shape, double s, const Vec3& 
   return rows;
 }
 
-double violation(const rod::Configuration& shape, double s, const Vec3& P) {
-  const rod::CurvePoint point = rod::curve_point(shape, s);
+double violation(const rod::CurvePoint& point, const Vec3& P) {
   const Vec3 gap = P - point.position, t = point.derivative.normalized();
   return (gap - t.dot(gap) * t).norm();
 }

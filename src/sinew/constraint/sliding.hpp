@@ -2,8 +2,8 @@
 //
 // With P(x) the point and gamma(q, s) the curve, the engine keeps the abscissa s as an unknown:
 //     c = P(x) - gamma(q, s) = 0          three rows,         lambda . gamma_s = 0       no friction,
-// which is the paper's pair of rows  delta = N^T (P - gamma)  with s eliminated; both live here, one in terms of the
-// other.
+// which is the paper's pair of rows  delta = N^T (P - gamma)  with s eliminated. The engine's rows are put together in
+// sim/reduced (`add_points`); here are the projection, and the paper's rows, which tests compare with them.
 #pragma once
 
 #include "sinew/rod/kinematics.hpp"
@@ -26,7 +26,8 @@ struct SlidingRows {
 };
 SlidingRows sliding_rows(const rod::Configuration& shape, double s, const Vec3& P);
 
-/// Distance between P and the rod in the normal plane at s [m]: what the convergence of a step is judged by.
-double violation(const rod::Configuration& shape, double s, const Vec3& P);
+/// Distance between P and the rod in the normal plane at a point of it [m]: what the convergence of a step is judged
+/// by.
+double violation(const rod::CurvePoint& point, const Vec3& P);
 
 }  // namespace sinew::constraint

@@ -127,6 +127,7 @@ std::string encode(const RecordingHeader& header) {
   for (const std::string* text :
        {&header.program_version, &header.scene_text, &header.scene_name, &header.scene_folder, &header.inputs_hash})
     out.string(*text);
+  out.u64(header.state_layout);
   out.u64(header.state_size);
   out.u64(header.signal_names.size());
   for (const std::string& name : header.signal_names) out.string(name);
@@ -151,6 +152,7 @@ std::optional<RecordingHeader> decode_header(std::string_view payload) {
   for (std::string* text :
        {&header.program_version, &header.scene_text, &header.scene_name, &header.scene_folder, &header.inputs_hash})
     *text = in.string();
+  header.state_layout = in.u64();
   header.state_size = in.u64();
   header.signal_names = in.strings(in.u64());
   if (!in.whole()) return std::nullopt;
@@ -214,13 +216,15 @@ Recording read_recording(std::istream& stream, std::uint64_t size, const std::st
   if (size < kPreamble || !stream.read(preamble, kPreamble) || std::string_view(preamble, 8) != kMagic)
     throw refused(file, "is not a Sinew recording", "give the recording in the output folder of a run");
   Decoder numbers({preamble + 8, 8});
-  const std::uint32_t version = numbers.u32();
-  if (version > kRecordingVersion)
+  const std::uint32_t version = numbers.u32(), reserved = numbers.u32();
+  const bool newer = version > kRecordingVersion;
+  if (!newer && (version == 0 || reserved != 0))
+    throw refused(file, "is damaged: there is no such recording format", "run the scene again");
+  if (version != kRecordingVersion)
     throw refused(file,
                   fmt::format("has recording format {}, and this program reads format {}", version, kRecordingVersion),
-                  "read it with the newer version of Sinew that wrote it");
-  if (version != kRecordingVersion || numbers.u32() != 0)
-    throw refused(file, "is damaged: there is no such recording format", "run the scene again");
+                  newer ? "read it with the newer version of Sinew that wrote it"
+                        : "run the scene again, or read it with the older version of Sinew that wrote it");
 
   Recording recording;
   RecordReader records(stream, size - kPreamble);

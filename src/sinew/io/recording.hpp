@@ -4,7 +4,7 @@
 // Bytes (all numbers little-endian; f64 is IEEE 754 binary64, its bits as they are):
 //
 //   file    magic     8 bytes  89 53 49 4e 45 57 0d 0a ("\x89SINEW\r\n": a text conversion destroys it)
-//           version   u32      1
+//           version   u32      3
 //           reserved  u32      0
 //           record 0           the header
 //           record 1, 2, ...   the steps, in order
@@ -14,7 +14,7 @@
 //           payload
 //
 //   header  string program_version, scene_text, scene_name, scene_folder, inputs_hash
-//           u64 state_size, u64 number of signals, string each signal's name
+//           u64 state_layout, u64 state_size, u64 number of signals, string each signal's name
 //   step    f64 time, string status, u32 newton, f64 residual, f64 violation, f64 each signal, f64 each state entry
 //   string  u64 bytes, then the bytes
 //
@@ -32,7 +32,7 @@
 
 namespace sinew::io {
 
-inline constexpr std::uint32_t kRecordingVersion = 2;
+inline constexpr std::uint32_t kRecordingVersion = 3;
 
 /// What was run. `inputs_hash` is the content hash of everything the scene reads (io/content_hash).
 struct RecordingHeader {
@@ -41,7 +41,8 @@ struct RecordingHeader {
   std::string scene_name;
   std::string scene_folder;
   std::string inputs_hash;
-  std::uint64_t state_size = 0;           ///< doubles of a state
+  std::uint64_t state_layout = 0;         ///< which numbers of a state, in which order (sim/state)
+  std::uint64_t state_size = 0;           ///< how many
   std::vector<std::string> signal_names;  ///< columns of signals.csv after time, status, newton
 
   bool operator==(const RecordingHeader&) const = default;

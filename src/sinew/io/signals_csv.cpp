@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sinew/io/append_file.hpp"
 
 namespace sinew::io {
 namespace {
@@ -29,18 +32,6 @@ std::string row_of(const RecordedStep& step) {
 }
 
 }  // namespace
-
-SignalsCsvWriter::SignalsCsvWriter(const std::filesystem::path& path, const std::vector<std::string>& signal_names)
-    : file_(path, AppendFile::Start::empty), signals_(signal_names.size()) {
-  file_.append(header_row(signal_names));
-}
-
-void SignalsCsvWriter::append(const RecordedStep& step) {
-  if (step.signals.size() != signals_)
-    throw std::invalid_argument(
-        fmt::format("row has {} signals, the table {} columns for them", step.signals.size(), signals_));
-  file_.append(row_of(step));
-}
 
 void write_signals_csv(const std::filesystem::path& path, const Recording& recording) {
   std::string text = header_row(recording.header.signal_names);

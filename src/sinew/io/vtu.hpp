@@ -19,8 +19,9 @@ std::string vtu_text(const SolidSnapshot& solid, double time);
 
 /// The same of a rod: one polyline; point data `abscissa` [m], `radius` [m], `tangent`, the strains `torsion`,
 /// `bending_y`, `bending_z` [1/m], `elongation`, `shear_y`, `shear_z` [-], their stresses `torsion_moment`,
-/// `bending_moment_y`, `bending_moment_z` [N m], `axial_force`, `shear_force_y`, `shear_force_z` [N], and `von_mises`
-/// [Pa]. What the snapshot does not have (strains of a geometric cable) is left out.
+/// `bending_moment_y`, `bending_moment_z` [N m], `axial_force`, `shear_force_y`, `shear_force_z` [N], `axial_stress`,
+/// `bending_stress`, `torsion_stress` and `von_mises` [Pa]. What the snapshot does not have (strains of a geometric
+/// cable) is left out.
 std::string vtu_text(const RodSnapshot& rod, double time);
 
 /// Writes a series snapshot by snapshot. Of each solid and rod: <name>_0000.vtu, <name>_0001.vtu, ... and <name>.pvd;

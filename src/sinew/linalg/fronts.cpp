@@ -1,9 +1,11 @@
 #include "sinew/linalg/fronts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "sinew/linalg/kernels.hpp"
@@ -126,7 +128,7 @@ void merge(const Graph& graph, std::vector<int>& order, std::vector<int>& first,
   }
 }
 
-/// Where lists of a plan begin: the fronts of an order, their rows below, what is whose parent.
+/// The fronts of an order: their unknowns, their rows below and their parents.
 void add_fronts(const Graph& graph, std::vector<int> order, Fronts& plan) {
   std::vector<int> first(order.size() + 1), parent = elimination_tree(graph, order);
   std::iota(first.begin(), first.end(), 0);
@@ -324,9 +326,16 @@ void add_parts(Fronts& plan) {
 /// Where panels and updates begin. Parts can be done at one time: each in a room like that of any other, but for the
 /// updates of their roots, which wait for their parents.
 void add_places(Fronts& plan) {
+  const int lanes = plan.precision == Precision::float64 ? kLanesOf<double> : kLanesOf<float>;
   for (Front& front : plan.fronts) {
-    front.stride = whole_lanes(front.rows() + whole_lanes(front.borders));
-    front.update_stride = whole_lanes(front.below + front.borders);
+    // A panel is read in whole registers from its first row below and from its first border row on, and factored from
+    // every eighth row on, whatever the lanes.
+    const int from_border = front.rows() + whole_lanes(front.borders, lanes) + lanes - kLanes;
+    const int from_below = front.columns + whole_lanes(front.below + front.borders, lanes);
+    front.stride = whole_lanes(std::max(from_border, from_below), lanes);
+    if (static_cast<std::int64_t>(front.stride) * front.columns > std::numeric_limits<std::int32_t>::max())
+      throw std::length_error("plan_fronts: a front of " + std::to_string(front.columns) + " unknowns");
+    front.update_stride = whole_lanes(front.below + front.borders, lanes);
     front.panel = plan.panels;
     plan.panels += static_cast<std::size_t>(front.stride) * static_cast<std::size_t>(front.columns);
   }
@@ -443,13 +452,14 @@ std::size_t Fronts::entries() const {
   return sum;
 }
 
-Fronts plan_fronts(const Compressed& lower, const Compressed& border, std::span<const int> slots) {
+Fronts plan_fronts(const Compressed& lower, const Compressed& border, std::span<const int> slots, Precision precision) {
   const Graph graph = graph_of(lower.size, lower.first, lower.index);
   Fronts best;
   for (const auto& ordering : {minimum_degree, nested_dissection}) {
     std::vector<int> order = ordering(graph);
     if (order.size() != graph.weight.size()) continue;
     Fronts plan;
+    plan.precision = precision;
     add_fronts(graph, std::move(order), plan);
     std::vector<int> front_of(plan.place.size());
     for (std::size_t s = 0; s < plan.fronts.size(); ++s)

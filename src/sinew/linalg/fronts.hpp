@@ -9,6 +9,7 @@
 
 #include "sinew/linalg/kernels.hpp"
 #include "sinew/linalg/ordering.hpp"
+#include "sinew/linalg/precision.hpp"
 
 namespace sinew::linalg {
 
@@ -27,7 +28,7 @@ struct Front {
   int below = 0;                ///< how many below
   int border = 0, borders = 0;  ///< first border row that reaches it, and how many (sorted)
   int parent = -1;              ///< the front its update goes to
-  int stride = 0, update_stride = 0;  ///< [doubles] from one column to the next, of panel and update
+  int stride = 0, update_stride = 0;  ///< [numbers] from one column to the next, of panel and update
   std::size_t panel = 0, update = 0;  ///< where they begin; the latter in a room of its part's, or where all share one
   bool in_part = false;               ///< below the root of a part
   std::size_t index = 0;              ///< where its rows begin in `below`
@@ -46,6 +47,7 @@ struct Front {
 };
 
 struct Fronts {
+  Precision precision = Precision::float64;
   std::vector<int> place;     ///< of each unknown in the order of elimination
   std::vector<int> border;    ///< of each border row in the order in which they are kept
   std::vector<Front> fronts;  ///< children before parents, each one's descendants just before it
@@ -66,7 +68,7 @@ struct Fronts {
   };
   std::vector<Part> parts;
   std::vector<int> top;
-  /// [doubles] that all panels take, updates of `top` and of the roots of parts alive at one time, and those of any one
+  /// [numbers] that all panels take, updates of `top` and of the roots of parts alive at one time, and those of any one
   /// part.
   std::size_t panels = 0, updates = 0, part_updates = 0;
 
@@ -101,8 +103,10 @@ struct Compressed {
 
 /// `lower`: columns of the lower triangle. `border`: rows of a matrix beside it; the unknowns of a row must all meet
 /// each other, like the nodes of an element. `slots`: four times its node plus its slot, 0 to 2, of each unknown,
-/// ascending; none: each is a node of its own. The unknowns of a node must all have the same neighbours. Throws
-/// std::invalid_argument where any of this does not hold.
-Fronts plan_fronts(const Compressed& lower, const Compressed& border, std::span<const int> slots = {});
+/// ascending; none: each is a node of its own. The unknowns of a node must all have the same neighbours. `precision`
+/// tells how wide registers are. Throws std::invalid_argument where any of this does not hold, std::length_error where
+/// a panel has 2^31 numbers or more.
+Fronts plan_fronts(const Compressed& lower, const Compressed& border, std::span<const int> slots = {},
+                   Precision precision = Precision::float64);
 
 }  // namespace sinew::linalg

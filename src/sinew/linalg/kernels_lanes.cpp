@@ -1,28 +1,33 @@
-// Compiled once for each width of registers: SINEW_LANES doubles, under the name SINEW_KERNELS. It includes nothing of
-// others, so that no function of theirs is compiled for a processor that may not be there.
+// Compiled once for each width of registers, SINEW_LANES doubles, and each kind of number, SINEW_REAL, under the name
+// SINEW_KERNELS. It includes nothing of others, so that no function of theirs is compiled for a processor that may not
+// be there.
 #include "sinew/linalg/kernels.hpp"
 
 namespace sinew::linalg {
 
-extern const Kernels SINEW_KERNELS;
+extern const Kernels kPortable, kAvx2, kAvx512;
+namespace single {
+extern const KernelsOf<float> kPortable, kAvx2, kAvx512;
+}
 
 namespace {
 
-constexpr int kWidth = SINEW_LANES;  ///< doubles in a register
-using Lanes [[gnu::vector_size(8 * SINEW_LANES), gnu::aligned(8), gnu::may_alias]] = double;
+using Real = SINEW_REAL;
+constexpr int kWidth = 8 * SINEW_LANES / sizeof(Real);  ///< numbers in a register
+using Lanes [[gnu::vector_size(8 * SINEW_LANES), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
 
-Lanes load(const double* p) { return *reinterpret_cast<const Lanes*>(p); }
-void store(double* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
+Lanes load(const Real* p) { return *reinterpret_cast<const Lanes*>(p); }
+void store(Real* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
 
 /// A tile of C that stays in registers: so many of them down, so many columns across.
-constexpr int kDown = kWidth == 8 ? 3 : kWidth == 4 ? 3 : 4;
-constexpr int kAcross = kWidth == 8 ? 8 : kWidth == 4 ? 4 : 2;
+constexpr int kDown = SINEW_LANES == 2 ? 4 : 3;
+constexpr int kAcross = SINEW_LANES;
 
 struct Product {
-  const double *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
+  const Real *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
   int stride, depth;
-  const double* signs;
-  double sign = 1.0;           ///< of all, where they are alike
+  const Real* signs;
+  Real sign = Real(1);         ///< of all, where they are alike
   const int* begin = nullptr;  ///< of each kLanes rows of A the first column that is not zero; null: all from 0
   int least_begin = 0;         ///< and of the rows of B
 
@@ -46,28 +51,28 @@ struct Product {
 
 /// C <- C - A S B^T or -A S B^T, for one tile.
 template <int down, int across, bool turned>
-void tile(double* C, int stride, const Product& product, bool fresh) {
+void tile(Real* C, int stride, const Product& product, bool fresh) {
   Lanes sum[across][down];
 #pragma GCC unroll 8
   for (int j = 0; j < across; ++j) {
 #pragma GCC unroll 8
     for (int i = 0; i < down; ++i) sum[j][i] = Lanes{};
   }
-  const double *A = product.A, *B = product.B;
+  const Real *A = product.A, *B = product.B;
   for (int k = 0; k < product.depth; ++k, A += product.stride, B += product.stride) {
     Lanes a[down];
 #pragma GCC unroll 8
     for (int i = 0; i < down; ++i) a[i] = load(A + kWidth * i);
 #pragma GCC unroll 8
     for (int j = 0; j < across; ++j) {
-      const double b = turned ? B[j] * product.signs[k] : B[j];
+      const Real b = turned ? B[j] * product.signs[k] : B[j];
 #pragma GCC unroll 8
       for (int i = 0; i < down; ++i) sum[j][i] -= a[i] * b;
     }
   }
 #pragma GCC unroll 8
   for (int j = 0; j < across; ++j) {
-    double* c = C + static_cast<long>(j) * stride;
+    Real* c = C + static_cast<long>(j) * stride;
 #pragma GCC unroll 8
     for (int i = 0; i < down; ++i) {
       const Lanes own = turned ? sum[j][i] : sum[j][i] * product.sign;
@@ -78,7 +83,7 @@ void tile(double* C, int stride, const Product& product, bool fresh) {
 
 /// The same for the rows `top` .. before `height`, to whole registers, of `across` columns.
 template <int across, bool turned>
-void strip(double* C, int stride, const Product& product, int top, int height, bool fresh) {
+void strip(Real* C, int stride, const Product& product, int top, int height, bool fresh) {
   int row = top;
   const auto tiles = [&]<int down>() {
     for (; row + kWidth * (down - 1) < height; row += kWidth * down) {
@@ -96,7 +101,7 @@ static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
 
 /// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`.
 template <bool turned>
-void update_rows(double* C, int C_stride, const Product& product, int top, int height, int columns, bool fresh) {
+void update_rows(Real* C, int C_stride, const Product& product, int top, int height, int columns, bool fresh) {
   int j = 0;
   const auto strips = [&]<int across>() {
     for (; j + across <= columns && j < height; j += across) {
@@ -114,7 +119,7 @@ void update_rows(double* C, int C_stride, const Product& product, int top, int h
 }
 
 template <bool turned>
-void rank_update(double* C, int C_stride, const Product& product, int height, int columns, bool fresh) {
+void rank_update(Real* C, int C_stride, const Product& product, int height, int columns, bool fresh) {
   if (product.begin || height <= 2 * kChunk) {
     update_rows<turned>(C, C_stride, product, 0, height, columns, fresh);
     return;
@@ -131,10 +136,10 @@ void rank_update(double* C, int C_stride, const Product& product, int height, in
   }
 }
 
-void update(double* C, int C_stride, Product product, int height, int columns, bool fresh) {
+void update(Real* C, int C_stride, Product product, int height, int columns, bool fresh) {
   bool mixed = false;  // rarely: where an indefinite matrix changes its sign
   for (int k = 1; k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
-  product.sign = product.depth > 0 ? product.signs[0] : 1.0;
+  product.sign = product.depth > 0 ? product.signs[0] : Real(1);
   if (mixed) {
     rank_update<true>(C, C_stride, product, height, columns, fresh);
   } else {
@@ -142,8 +147,8 @@ void update(double* C, int C_stride, Product product, int height, int columns, b
   }
 }
 
-void update(double* C, int C_stride, const double* A, int A_stride, int height, int columns, int depth,
-            const double* signs, bool fresh) {
+void update(Real* C, int C_stride, const Real* A, int A_stride, int height, int columns, int depth, const Real* signs,
+            bool fresh) {
   update(C, C_stride, Product{A, A, A_stride, depth, signs}, height, columns, fresh);
 }
 
@@ -151,7 +156,7 @@ constexpr int kBlock = 8;  ///< columns of a panel that are factored together
 
 /// Columns to the right of each other on the same rows: X <- X U^-1, U[i][j] = signs[i] P[j, i].
 template <int columns>
-void divide(double* P, int stride, int rows, const double (&U)[kBlock][kBlock], const double* inverse) {
+void divide(Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], const Real* inverse) {
   for (int r = 0; r < rows; r += kWidth) {
     Lanes x[columns];
 #pragma GCC unroll 8
@@ -166,7 +171,7 @@ void divide(double* P, int stride, int rows, const double (&U)[kBlock][kBlock], 
   }
 }
 
-void divide(int columns, double* P, int stride, int rows, const double (&U)[kBlock][kBlock], const double* inverse) {
+void divide(int columns, Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], const Real* inverse) {
   switch (columns) {
     case 1:
       return divide<1>(P, stride, rows, U, inverse);
@@ -190,15 +195,14 @@ void divide(int columns, double* P, int stride, int rows, const double (&U)[kBlo
 /// What factor_profile says of a matrix; nothing of any other.
 struct Profile {
   const int* begin = nullptr;
-  const double* least = nullptr;
+  const Real* least = nullptr;
 };
 
-bool factor_panel(double* panel, int stride, int columns, int height, const Profile& profile, double* pivots,
-                  double* signs) {
+bool factor_panel(Real* panel, int stride, int columns, int height, const Profile& profile, Real* pivots, Real* signs) {
   static_assert(kBlock == kLanes);
   for (int first = 0; first < columns; first += kBlock) {
     const int count = columns - first < kBlock ? columns - first : kBlock;
-    double* block = panel + static_cast<long>(first) * stride + first;
+    Real* block = panel + static_cast<long>(first) * stride + first;
     if (first > 0) {
       Product before{panel + first, panel + first, stride, first, signs};
       if (profile.begin) {
@@ -208,19 +212,19 @@ bool factor_panel(double* panel, int stride, int columns, int height, const Prof
       update(block, stride, before, height - first, count, false);
     }
     // The square on the diagonal is factored apart; all rows, its own too, are then divided by it.
-    double square[kBlock][kBlock], U[kBlock][kBlock], inverse[kBlock], root[kBlock];
+    Real square[kBlock][kBlock], U[kBlock][kBlock], inverse[kBlock], root[kBlock];
     for (int j = 0; j < count; ++j) {
       for (int r = j; r < count; ++r) {
         square[j][r] = block[static_cast<long>(j) * stride + r];
         for (int i = 0; i < j; ++i) square[j][r] -= square[i][r] * U[i][j];
       }
-      double& d = square[j][j];
+      Real& d = square[j][j];
       if (profile.least && __builtin_fabs(d) < __builtin_fabs(profile.least[first + j])) d = profile.least[first + j];
-      const double size = __builtin_fabs(d), sign = d < 0.0 ? -1.0 : 1.0;
-      if (!(size > 0.0) || !(size <= __DBL_MAX__)) return false;
+      const Real size = d < Real(0) ? -d : d, sign = d < Real(0) ? -Real(1) : Real(1);
+      if (!(size > Real(0)) || !(size <= __DBL_MAX__)) return false;
       pivots[first + j] = d;
       signs[first + j] = sign;
-      root[j] = __builtin_sqrt(size);
+      root[j] = static_cast<Real>(__builtin_sqrt(size));
       inverse[j] = sign / root[j];
       for (int r = j; r < count; ++r) {
         square[j][r] *= inverse[j];
@@ -245,19 +249,19 @@ bool factor_panel(double* panel, int stride, int columns, int height, const Prof
   return true;
 }
 
-bool factor(double* panel, int stride, int columns, int height, double* pivots, double* signs) {
+bool factor(Real* panel, int stride, int columns, int height, Real* pivots, Real* signs) {
   return factor_panel(panel, stride, columns, height, Profile{}, pivots, signs);
 }
 
-bool factor_profile(double* panel, int stride, int columns, const int* begin, const double* least, double* pivots,
-                    double* signs) {
+bool factor_profile(Real* panel, int stride, int columns, const int* begin, const Real* least, Real* pivots,
+                    Real* signs) {
   return factor_panel(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
 }
 
 /// to <- to + from, with registers of ever smaller size.
 template <int width>
-void add_run(const double* from, double* to, int length) {
-  using Part [[gnu::vector_size(8 * width), gnu::aligned(8), gnu::may_alias]] = double;
+void add_run(const Real* from, Real* to, int length) {
+  using Part [[gnu::vector_size(sizeof(Real) * width), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
   int i = 0;
   for (; i + width <= length; i += width) *reinterpret_cast<Part*>(to + i) += *reinterpret_cast<const Part*>(from + i);
   if constexpr (width > 2) {
@@ -267,26 +271,26 @@ void add_run(const double* from, double* to, int length) {
   }
 }
 
-void add(const double* from, int from_stride, int first, int end, const Run* runs, int count, double* to, int to_stride,
+void add(const Real* from, int from_stride, int first, int end, const Run* runs, int count, Real* to, int to_stride,
          int shift) {
   int at = 0;  // the run of column j
   for (int j = first; j < end; ++j) {
     while (runs[at].row + runs[at].length <= j) ++at;
-    const double* own = from + static_cast<long>(j) * from_stride;
+    const Real* own = from + static_cast<long>(j) * from_stride;
     const int into = runs[at].into + j - runs[at].row;
-    double* column = to + static_cast<long>(into - shift) * to_stride - shift;
+    Real* column = to + static_cast<long>(into - shift) * to_stride - shift;
     add_run<kWidth>(own + j, column + into, runs[at].row + runs[at].length - j);
     for (int k = at + 1; k < count; ++k) add_run<kWidth>(own + runs[k].row, column + runs[k].into, runs[k].length);
   }
 }
 
-void multiply(const double* A, int stride, int height, int columns, const double* x, double* y) {
+void multiply(const Real* A, int stride, int height, int columns, const Real* x, Real* y) {
   constexpr int kRows = 4;  // registers
   const auto rows = [&]<int count>(int at) {
     Lanes sum[count];
     for (int i = 0; i < count; ++i) sum[i] = load(y + at + kWidth * i);
     for (int k = 0; k < columns; ++k) {
-      const double* a = A + static_cast<long>(k) * stride + at;
+      const Real* a = A + static_cast<long>(k) * stride + at;
       for (int i = 0; i < count; ++i) sum[i] -= load(a + kWidth * i) * x[k];
     }
     for (int i = 0; i < count; ++i) store(y + at + kWidth * i, sum[i]);
@@ -296,39 +300,69 @@ void multiply(const double* A, int stride, int height, int columns, const double
   for (; at < height; at += kWidth) rows.template operator()<1>(at);
 }
 
-double total(const Lanes& v) {
-  double sum = v[0];
+Real total(const Lanes& v) {
+  Real sum = v[0];
   for (int i = 1; i < kWidth; ++i) sum += v[i];
   return sum;
 }
 
+/// The sums of four registers' lanes, added by halves.
+void totals(const Lanes (&v)[4], Real* sums) {
+  if constexpr (kWidth < 4) {
+    for (int k = 0; k < 4; ++k) sums[k] = total(v[k]);
+  } else {
+    using Four [[gnu::vector_size(4 * sizeof(Real)), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
+    Four part[4];
+    for (int k = 0; k < 4; ++k) {
+      const Four* own = reinterpret_cast<const Four*>(&v[k]);
+      part[k] = own[0];
+      for (int i = 1; i < kWidth / 4; ++i) part[k] += own[i];
+    }
+    const Four low =
+        __builtin_shufflevector(part[0], part[1], 0, 4, 2, 6) + __builtin_shufflevector(part[0], part[1], 1, 5, 3, 7);
+    const Four high =
+        __builtin_shufflevector(part[2], part[3], 0, 4, 2, 6) + __builtin_shufflevector(part[2], part[3], 1, 5, 3, 7);
+    *reinterpret_cast<Four*>(sums) =
+        __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7);
+  }
+}
+
 template <int count>
-void dots(const double* A, int stride, int height, const double* y, double* x) {
+void dots(const Real* A, int stride, int height, const Real* y, Real* x) {
   Lanes sum[count] = {};
   int at = 0;
   for (; at + kWidth <= height; at += kWidth) {
     const Lanes own = load(y + at);
+#pragma GCC unroll 4
     for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * own;
   }
-  for (int k = 0; k < count; ++k) {
-    double rest = 0.0;
-    for (int i = at; i < height; ++i) rest += A[static_cast<long>(k) * stride + i] * y[i];
-    x[k] -= total(sum[k]) + rest;
+  if (at < height) {
+    Lanes own = {};
+    for (int i = at; i < height; ++i) own[i - at] = y[i];
+#pragma GCC unroll 4
+    for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * own;
   }
+  Real sums[count];
+  if constexpr (count == 4) {
+    totals(sum, sums);
+  } else {
+    for (int k = 0; k < count; ++k) sums[k] = total(sum[k]);
+  }
+  for (int k = 0; k < count; ++k) x[k] -= sums[k];
 }
 
-void multiply_transposed(const double* A, int stride, int height, int columns, const double* y, double* x) {
+void multiply_transposed(const Real* A, int stride, int height, int columns, const Real* y, Real* x) {
   int k = 0;
   for (; k + 4 <= columns; k += 4) dots<4>(A + static_cast<long>(k) * stride, stride, height, y, x + k);
   for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, x + k);
 }
 
 // Blocks on the diagonal one by one; y and x have whole lanes.
-void solve(const double* panel, int stride, int columns, double* y) {
+void solve(const Real* panel, int stride, int columns, Real* y) {
   for (int first = 0; first < columns; first += kBlock) {
     const int end = first + kBlock < columns ? first + kBlock : columns;
     for (int j = first; j < end; ++j) {
-      const double* column = panel + static_cast<long>(j) * stride;
+      const Real* column = panel + static_cast<long>(j) * stride;
       y[j] /= column[j];
       for (int r = j + 1; r < end; ++r) y[r] -= column[r] * y[j];
     }
@@ -337,13 +371,13 @@ void solve(const double* panel, int stride, int columns, double* y) {
   }
 }
 
-void solve_transposed(const double* panel, int stride, int columns, double* x) {
+void solve_transposed(const Real* panel, int stride, int columns, Real* x) {
   for (int first = (columns - 1) / kBlock * kBlock; first >= 0; first -= kBlock) {
     const int end = first + kBlock < columns ? first + kBlock : columns;
     multiply_transposed(panel + static_cast<long>(first) * stride + end, stride, columns - end, end - first, x + end,
                         x + first);
     for (int j = end - 1; j >= first; --j) {
-      const double* column = panel + static_cast<long>(j) * stride;
+      const Real* column = panel + static_cast<long>(j) * stride;
       for (int r = j + 1; r < end; ++r) x[j] -= column[r] * x[r];
       x[j] /= column[j];
     }
@@ -352,7 +386,7 @@ void solve_transposed(const double* panel, int stride, int columns, double* x) {
 
 }  // namespace
 
-const Kernels SINEW_KERNELS{SINEW_NAME,       factor,   factor_profile,     update, add, solve,
-                            solve_transposed, multiply, multiply_transposed};
+const KernelsOf<Real> SINEW_KERNELS{SINEW_NAME,       factor,   factor_profile,     update, add, solve,
+                                    solve_transposed, multiply, multiply_transposed};
 
 }  // namespace sinew::linalg

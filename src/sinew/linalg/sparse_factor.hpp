@@ -4,8 +4,10 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <variant>
 #include <vector>
 
+#include "sinew/linalg/front_panels.hpp"
 #include "sinew/linalg/fronts.hpp"
 #include "sinew/linalg/kernels.hpp"
 #include "sinew/threads/crew.hpp"
@@ -19,6 +21,9 @@ namespace sinew::linalg {
 /// With R = |D|^(-1/2) L^-1 P and S the signs of D, A^-1 = R^T S R. Vectors R b are in the order of elimination.
 /// Border rows H beside A, few and sparse, are eliminated with it: their columns R H^T are nonzero only on the way from
 /// their unknowns to the root of the elimination tree, and only there they cost anything.
+///
+/// In single precision the factor takes half the room and about half the time; what is solved with it, and W, is then
+/// good to some 1e-7 of A's condition, and wants refinement: `subtract_product` is exact.
 class SparseFactor {
  public:
   using Matrix = Eigen::SparseMatrix<double>;  ///< lower triangle, compressed columns
@@ -26,9 +31,13 @@ class SparseFactor {
 
   /// The unknowns of a border row must all meet each other in A; throws std::invalid_argument where they do not.
   static std::shared_ptr<const Fronts> make_plan(const Matrix& pattern, const Rows& border = {},
-                                                 std::span<const int> slots = {});
+                                                 std::span<const int> slots = {},
+                                                 Precision precision = Precision::float64);
 
-  explicit SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& kernels = linalg::kernels());
+  /// With the fastest kernels of the precision that the plan was made for.
+  explicit SparseFactor(std::shared_ptr<const Fronts> plan);
+  SparseFactor(std::shared_ptr<const Fronts> plan, const Kernels& kernels);
+  SparseFactor(std::shared_ptr<const Fronts> plan, const KernelsOf<float>& kernels);
 
   /// The numbers of A are added between `clear` and `factor`, each at its Fronts::entry; those of H are set, row by
   /// row.
@@ -47,13 +56,15 @@ class SparseFactor {
   int size() const { return static_cast<int>(plan_->place.size()); }
   int borders() const { return static_cast<int>(plan_->border.size()); }
   /// Largest entry of A's diagonal, its size.
-  double largest_diagonal() const { return diagonal_.size() > 0 ? diagonal_.maxCoeff() : 0.0; }
+  double largest_diagonal() const { return diagonal().size() > 0 ? diagonal().maxCoeff() : 0.0; }
   /// How many eigenvalues are negative (Sylvester).
   int negative() const { return negative_; }
   /// Numbers kept of L below its diagonal, zeros between merged columns included.
   std::size_t entries() const { return plan_->entries(); }
   /// S, as a vector.
-  const Eigen::VectorXd& signs() const { return signs_; }
+  Eigen::VectorXd signs() const;
+  /// r <- r - A x, with A as it has been put together.
+  void subtract_product(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> r) const;
   /// y = R b: with X made of such columns, B^T A^-1 B = X^T S X.
   void half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const;
   /// x = R^T S y: the second half of A^-1 b.
@@ -69,27 +80,19 @@ class SparseFactor {
   void add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::Ref<Eigen::VectorXd> y) const;
 
  private:
-  bool factor_fronts(threads::Crew& crew);
-  void start_panel(const Front& front);
-  bool factor_front(const Front& front, double* room, threads::Crew& crew);
-  double* update_of(const Front& front, double* room) {
-    return (front.in_part ? room : updates_.data()) + front.update;
-  }
-  void add_children(const Front& front, double* room, bool to_panel, threads::Crew& crew);
-  void update(threads::Crew& crew, double* C, int C_stride, const double* A, int A_stride, int height, int columns,
-              int depth, const double* signs, bool fresh);
+  using Panels = std::variant<FrontPanels<double>, FrontPanels<float>>;
+  SparseFactor(std::shared_ptr<const Fronts> plan, Panels panels);
+  /// Visits the entries of A on and below its diagonal, in the order of elimination, by their unknowns.
+  template <class Visit>
+  void each_entry(const Visit& visit) const;
+  const Eigen::VectorXd& diagonal() const;
   double scaled_condition() const;
 
   std::shared_ptr<const Fronts> plan_;
-  const Kernels* kernels_;
-  std::vector<double> values_, border_values_, panels_, updates_;
-  std::vector<std::vector<double>> rooms_;  ///< of parts that are done at one time
-  Eigen::VectorXd diagonal_;                ///< of A, its size
-  Eigen::VectorXd pivots_, signs_;
-  Eigen::MatrixXd minus_W_;  ///< -H A^-1 H^T below its diagonal, in the order of the plan
-  std::size_t largest_ = 0;  ///< [doubles] that hold any front's unknowns
+  std::vector<int> unknown_;  ///< at each place
+  std::vector<double> values_, border_values_;
+  Panels panels_;
   int negative_ = 0;
-  mutable Eigen::VectorXd own_, below_, whole_, bordering_;  ///< room for solves: one thread at a time
 };
 
 }  // namespace sinew::linalg

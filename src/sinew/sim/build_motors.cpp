@@ -70,13 +70,13 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
     });
     const bool driven = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const ActuatorModel& other) {
       return other.line == own.line && !other.tendon && (other.motion == Motion::rotation) == turns &&
-             other.unknown == motion.axis;
+             other.axis == motion.axis;
     });
     if (driven)
       reject(path, name, "the rod already has an actuator of this motion", "drive each motion of a base once");
     same->sign = motion.sign;
   }
-  own.unknown = motion.axis;  // until unknowns are numbered
+  own.axis = motion.axis;
   model.actuators.push_back(own);
 }
 

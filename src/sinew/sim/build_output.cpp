@@ -23,6 +23,8 @@ void on_solid(Model& model, const Output& output, const std::string& path, Outpu
     reject(path, *output.solid, output.region ? "no node of this region is held" : "no node of this solid is held",
            "a reaction is the force on what is `fixed`: name a region that is");
   }
+  if (output.region)
+    reject(path + ".region", "", "is for `quantity: reaction`", "name a `point`, or write `quantity: reaction`");
   const Pose& pose = model.scene.solids[own.solid].second.pose;
   const Vec3 x =
       output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);

@@ -194,7 +194,7 @@ Asked points_in_channel(const Model& model, const Line& line, int solid, const S
 
 }  // namespace
 
-void build_slide(Model& model, int number, const Slide& slide) {
+void build_coupling(Model& model, int number, const Slide& slide) {
   const std::string path = "couplings." + std::to_string(number) + ".slide";
   const Line line = find_line(model, slide.rod, path + ".rod");
   const int solid = find(model.scene.solids, slide.solid, path + ".solid", "solid");

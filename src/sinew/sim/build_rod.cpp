@@ -172,8 +172,8 @@ std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod, c
   return points;
 }
 
-CableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod) {
-  CableModel model;
+GeometricCableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod) {
+  GeometricCableModel model;
   model.name = name;
   model.frame = find_frame(scene, rod.frame, "rods." + name);
   model.path = path_in_world(scene, model.frame, rod, "rods." + name);

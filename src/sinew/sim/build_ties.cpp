@@ -76,7 +76,7 @@ void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Ve
   }
 }
 
-void build_tie(Model& model, int number, const Tie& tie) {
+void build_coupling(Model& model, int number, const Tie& tie) {
   const std::string path = "couplings." + std::to_string(number) + ".tie";
   const int rod = find_rod(model, tie.rod, path + ".rod");
   const double s = abscissa_on(model, rod, tie.at, path + ".at");

@@ -1,5 +1,5 @@
-// The parts of build(): each judges one kind of object of a scene and adds it to the model. Only sim/build_*.cpp and
-// sim/model.cpp include this.
+// The parts of build(): each judges one kind of object of a scene and adds it to the model. Only sim/build_*.cpp,
+// sim/model.cpp and sim/solid_matrix.cpp include this.
 #pragma once
 
 #include <optional>
@@ -59,7 +59,7 @@ Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection, Spre
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
                        std::vector<std::string>& warnings);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
-CableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
+GeometricCableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
 
 /// The points of the path of a rod, judged, in the world.
 std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod, const std::string& path);
@@ -97,8 +97,9 @@ void check_drive(const Drive& drive, const std::string& path);
 /// Statics needs bodies that something holds; in motion they may fly, which is warned of.
 void check_held(Model& model, int solid);
 
-void build_slide(Model& model, int number, const Slide& slide);
-void build_tie(Model& model, int number, const Tie& tie);
+/// One for each kind.
+void build_coupling(Model& model, int number, const Slide& slide);
+void build_coupling(Model& model, int number, const Tie& tie);
 void build_actuator(Model& model, const std::string& name, const Actuator& actuator);
 void build_load(Model& model, const std::string& name, const Load& load);
 void build_output(Model& model, const std::string& name, const Output& output);

@@ -94,6 +94,8 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   }
   Eigen::MatrixXd& W = model.effectors.empty() ? volume.W : compliance_;
   factor_->compliance(W);
+  rim_.clear();
+  N_.resize(0, 0);
   Y_.resize(0, 0);
   Z_.resize(0, 0);
   if (kind == solid::Tangent::exact) add_rim(context, iterate, number, W);
@@ -106,25 +108,23 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
 /// The antisymmetric part of the pressures' tangents.
 void FreeMotion::add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W) {
   const SolidModel& model = context.model.solids[number];
-  std::vector<int> unknowns;
-  Eigen::MatrixXd N;
   each_load(context, number, [&](const SolidLoadModel& load, double factor) {
     if (load.conservative() || factor == 0.0) return;
-    const auto before = static_cast<Eigen::Index>(unknowns.size()), more = static_cast<Eigen::Index>(load.rim.size());
-    unknowns.insert(unknowns.end(), load.rim.begin(), load.rim.end());
-    N.conservativeResizeLike(Eigen::MatrixXd::Zero(before + more, before + more));
-    N.bottomRightCorner(more, more) = pressure_skew(model, load, factor, iterate.solids[number].x);
+    const auto before = static_cast<Eigen::Index>(rim_.size()), more = static_cast<Eigen::Index>(load.rim.size());
+    rim_.insert(rim_.end(), load.rim.begin(), load.rim.end());
+    N_.conservativeResizeLike(Eigen::MatrixXd::Zero(before + more, before + more));
+    N_.bottomRightCorner(more, more) = pressure_skew(model, load, factor, iterate.solids[number].x);
   });
-  if (unknowns.empty()) return;
-  Y_.resize(model.body.unknowns, N.cols());
-  Eigen::MatrixXd HY(factor_->borders(), N.cols());
-  for (Eigen::Index i = 0; i < N.cols(); ++i) {
-    factor_->half_solve(Eigen::VectorXd::Unit(model.body.unknowns, unknowns[static_cast<std::size_t>(i)]), Y_.col(i));
+  if (rim_.empty()) return;
+  Y_.resize(model.body.unknowns, N_.cols());
+  Eigen::MatrixXd HY(factor_->borders(), N_.cols());
+  for (Eigen::Index i = 0; i < N_.cols(); ++i) {
+    factor_->half_solve(Eigen::VectorXd::Unit(model.body.unknowns, rim_[static_cast<std::size_t>(i)]), Y_.col(i));
     factor_->border_times(Y_.col(i), HY.col(i));
   }
   const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
-  Z_ = (Eigen::MatrixXd::Identity(N.rows(), N.cols()) + N * C).partialPivLu().solve(N);
+  Z_ = (Eigen::MatrixXd::Identity(N_.rows(), N_.cols()) + N_ * C).partialPivLu().solve(N_);
   W -= HY * Z_ * HY.transpose();
 }
 
@@ -141,34 +141,56 @@ void FreeMotion::push(const SolidModel& model, const Model& whole, const Eigen::
   factor_->border_times(with_rim(y_), rows_);
   for (std::size_t k = 0; k < model.rows.size(); ++k)
     c.segment<3>(whole.solid_rows[model.rows[k]].row) += rows_.segment<3>(static_cast<Eigen::Index>(3 * k));
-  free_ = rows_.tail(static_cast<Eigen::Index>(3 * model.effectors.size()));
+  free_ = rows_;
+}
+
+void FreeMotion::gather(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda) {
+  rows_.setZero();
+  for (std::size_t k = 0; k < model.rows.size(); ++k)
+    rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
 }
 
 void FreeMotion::effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
                                  bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
   if (model.effectors.empty()) return;
-  rows_.setZero();
-  for (std::size_t k = 0; k < model.rows.size(); ++k)
-    rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
-  const auto count = static_cast<Eigen::Index>(3 * model.effectors.size());
+  gather(model, whole, dlambda);
   for (std::size_t k = 0; k < model.effectors.size(); ++k) {
     for (int i = 0; i < 3; ++i) {
-      const Eigen::Index own = static_cast<Eigen::Index>(3 * k) + i;
-      motion[3 * model.effectors[k] + i] =
-          (pushed ? free_[own] : 0.0) + compliance_.row(compliance_.rows() - count + own).dot(rows_);
+      const auto own = static_cast<Eigen::Index>(3 * (model.rows.size() + k)) + i;
+      motion[3 * model.effectors[k] + i] = (pushed ? free_[own] : 0.0) + compliance_.row(own).dot(rows_);
     }
   }
 }
 
 void FreeMotion::correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
                          Eigen::Matrix3Xd& dx) {
-  rows_.setZero();
-  for (std::size_t k = 0; k < model.rows.size(); ++k)
-    rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
+  gather(model, whole, dlambda);
   factor_->add_border_transposed(rows_, y_);
   x_.resize(model.body.unknowns);
   factor_->back_solve(with_rim(y_), x_);
   solid::from_unknowns(model.body, x_, dx);
+}
+
+double FreeMotion::leave(const SolidModel& model, const Model& whole, const solve::VolumePart& volume,
+                         const Eigen::VectorXd& dlambda, const Eigen::Matrix3Xd& dx, Eigen::VectorXd& force,
+                         Eigen::VectorXd& c) {
+  gather(model, whole, dlambda);
+  solid::at_unknowns(model.body, dx, x_);
+  const Eigen::Index rows = volume.W.rows();
+  free_.head(rows).noalias() += volume.W.lazyProduct(rows_.head(rows));
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    double motion = 0.0;
+    for (int at = model.border.outerIndexPtr()[k]; at < model.border.outerIndexPtr()[k + 1]; ++at) {
+      const double weight = factor_->border_values()[at];
+      const int unknown = model.border.innerIndexPtr()[at];
+      motion += weight * x_[unknown];
+      force[unknown] += weight * rows_[k];
+    }
+    c[volume.at[static_cast<std::size_t>(k)]] += motion - free_[k];
+  }
+  factor_->subtract_product(x_, force);
+  if (!rim_.empty()) force(rim_) -= N_ * Eigen::VectorXd(x_(rim_));
+  return force.size() > 0 ? force.lpNorm<Eigen::Infinity>() : 0.0;
 }
 
 }  // namespace sinew

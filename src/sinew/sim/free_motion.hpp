@@ -39,16 +39,24 @@ class FreeMotion {
                        Eigen::Ref<Eigen::VectorXd> motion);
   /// And the second: 3 x nodes displacement of the volume (zero where it is held).
   void correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, Eigen::Matrix3Xd& dx);
+  /// What a factor in single precision leaves of the force that was pushed, once (corrected) by dlambda and dx:
+  ///     f <- f + H^T dlambda - A dx,      c <- H dx - (what `push` and W dlambda took it for)
+  /// Returns the size of f [N].
+  double leave(const SolidModel& model, const Model& whole, const solve::VolumePart& volume,
+               const Eigen::VectorXd& dlambda, const Eigen::Matrix3Xd& dx, Eigen::VectorXd& force, Eigen::VectorXd& c);
 
  private:
+  /// Forces of the model's rows, zeros for effectors.
+  void gather(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda);
   void add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W);
   /// V y.
   const Eigen::VectorXd& with_rim(const Eigen::VectorXd& y);
 
   std::optional<linalg::SparseFactor> factor_;
   Eigen::MatrixXd compliance_;  ///< of all border rows, those of effectors last
-  Eigen::VectorXd free_;        ///< motion of effectors by the push
-  Eigen::MatrixXd Y_, Z_;       ///< V = 1 - Y Z Y^T S; empty where A is symmetric
+  Eigen::VectorXd free_;        ///< motion of the border rows by the push
+  std::vector<int> rim_;        ///< unknowns of P
+  Eigen::MatrixXd N_, Y_, Z_;   ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
 };
 

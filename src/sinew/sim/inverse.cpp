@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -21,6 +22,13 @@ void check(const Model& model, const Goal& goal) {
   const std::size_t n = model.actuators.size();
   if (goal.positions.size() != model.effectors.size() || goal.least.size() != n || goal.most.size() != n)
     throw std::invalid_argument("inverse_step: a goal for each effector and bounds for each actuator are needed");
+  for (const Vec3& x : goal.positions) {
+    if (!x.allFinite()) throw std::invalid_argument("inverse_step: a goal is not finite");
+  }
+  for (std::size_t a = 0; a < n; ++a) {
+    if (!(goal.least[a] <= goal.most[a]))
+      throw std::invalid_argument("inverse_step: bounds of actuators." + model.actuators[a].name);
+  }
   for (const ActuatorModel& actuator : model.actuators) {
     if (actuator.row >= 0 || actuator.tendon || actuator.motion != Motion::translation)
       throw std::invalid_argument("inverse_step: actuators." + actuator.name + " is not a force on a rod's base");
@@ -46,10 +54,7 @@ void InverseRoom::steer(const Goal& goal, StepContext& context, const State& ite
     e.segment<3>(static_cast<Eigen::Index>(3 * k)) +=
         solid_point(model, iterate, own.solid, own.where) - goal.positions[k];
   }
-  unit.r.setZero(model.unknowns);
-  unit.c.setZero(model.rows);
-  unit.chains.resize(model.rods.size());
-  for (std::size_t i = 0; i < model.rods.size(); ++i) unit.chains[i].setZero(model.rods[i].rod.strain_coordinates());
+  clear(model, unit);
   bool ok = solution.ok;
   for (std::size_t a = 0; a < n; ++a) {
     unit.r[model.actuators[a].unknown] = -1.0;
@@ -103,7 +108,7 @@ InverseReport inverse_step(const Model& model, Workspace& workspace, const Goal&
   rules.steer = std::cref(steer);  // (by reference: a copy would ask for memory)
   InverseReport report;
   report.step = newton([](double, StepContext&) {}, memory, rules, iterate);
-  report.distance = memory.inverse.e.norm();
+  report.distance = accepted(report.step.status) ? memory.inverse.e.norm() : NAN;
   if (accepted(report.step.status)) std::swap(state, iterate.state);
   return report;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sinew/sim/clock.hpp"
 
@@ -28,7 +29,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   context_ = &context;
   iterate_ = &iterate;
   times_ = &times;
-  rotated_ = coupled_ = false;
+  rotated_ = coupled_ = stalled_ = false;
   ahead_ = then.has_value();
   const std::size_t solids = context.model.solids.size();
   forces_.resize(solids);
@@ -77,13 +78,13 @@ bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& fail
            });
   }
   if (!solids_factored(failed)) return false;
-  couple();
+  factor_border();
   if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) return true;
   if (conservative() && negative_ + factor_.negative() <= context_->model.rows) return true;
   rotated_ = true;
   beside([&](std::size_t i, StageTimes& own) { factor_solid(i, solid::Tangent::definite, own); }, [](StageTimes&) {});
   if (!solids_factored(failed)) return false;
-  couple();
+  factor_border();
   return true;
 }
 
@@ -113,7 +114,7 @@ bool Linearization::solids_factored(std::string& failed) {
   return true;
 }
 
-void Linearization::couple() {
+void Linearization::factor_border() {
   const Clock clock(times_->solve);
   factor_.factor();
   coupled_ = true;
@@ -125,7 +126,7 @@ void Linearization::stiffen() {
     for (int k = 0; k < chain.chain.links(); ++k) chain.chain.block(k).diagonal() *= 1.0 + kPart;
   }
   factor_.eliminate_chains(reduced_.problem);
-  couple();
+  factor_border();
 }
 
 bool Linearization::conservative() const {
@@ -162,6 +163,38 @@ void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::R
   if (!increment.reduced.ok) return;
   for (std::size_t i = 0; i < free_.size(); ++i)
     free_[i].correct(model.solids[i], model, increment.reduced.dlambda, increment.dx[i]);
+  if (model.scene.newton.precision == linalg::Precision::float32) refine(solids, increment);
+}
+
+void Linearization::refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment) {
+  constexpr int kMost = 20;
+  constexpr double kAimed = 1e-15, kEnough = 1e-12;
+  const Model& model = context_->model;
+  left_ = solids;
+  part_ = increment;
+  double left = INFINITY;
+  for (int turn = 0;; ++turn) {
+    clear(model, rest_);
+    const double before = std::exchange(left, 0.0);
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const double size = free_[i].stiffness() * increment.dx[i].cwiseAbs().maxCoeff();
+      const double own = free_[i].leave(model.solids[i], model, reduced_.problem.volumes[i], part_.reduced.dlambda,
+                                        part_.dx[i], left_[i], rest_.c);
+      const double relative = own == 0.0 ? 0.0 : own / size;
+      left = relative <= left || std::isnan(left) ? left : relative;  // NaN stays
+    }
+    if (left < kAimed || !(left < 0.5 * before) || turn == kMost) break;
+    for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, left_[i], rest_.c);
+    factor_.solve(rest_, part_.reduced);
+    if (!part_.reduced.ok) break;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      free_[i].correct(model.solids[i], model, part_.reduced.dlambda, part_.dx[i]);
+      increment.dx[i] += part_.dx[i];
+    }
+    increment.reduced += part_.reduced;
+  }
+  stalled_ = !(left < kEnough);
+  increment.reduced.ok = !stalled_;
 }
 
 void Linearization::effector_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {

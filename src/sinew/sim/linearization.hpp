@@ -49,6 +49,8 @@ class Linearization {
   /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
   /// a definite one stood in.
   bool unstable() const;
+  /// What was last solved in single precision could not be refined to what double precision gives.
+  bool stalled() const { return stalled_; }
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
 
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
@@ -70,7 +72,9 @@ class Linearization {
   void beside(const OfSolid& of_solid, const OfRods& of_rods);
   void factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times);
   bool solids_factored(std::string& failed);
-  void couple();
+  void factor_border();
+  /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
+  void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 
   threads::Crew& crew_;
   const StepContext* context_ = nullptr;
@@ -79,7 +83,7 @@ class Linearization {
   std::vector<SolidForces> forces_;
   Reduced reduced_;
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
-  bool ahead_ = false, rotated_ = false, coupled_ = false;
+  bool ahead_ = false, rotated_ = false, coupled_ = false, stalled_ = false;
   int negative_ = 0;  ///< eigenvalues of the volumes' tangents
   enum class Factored { failed, as_told, definite };
   std::vector<Factored> factored_;  ///< each volume
@@ -88,6 +92,9 @@ class Linearization {
   solve::CoupledFactor factor_;
   std::vector<Eigen::VectorXd> pushes_;
   solve::RightSide side_;
+  std::vector<Eigen::VectorXd> left_;  ///< by a refinement, of which these are the rest and a part
+  solve::RightSide rest_;
+  Increment part_;
 };
 
 /// Moves an iterate by `fraction` of an increment.

@@ -17,7 +17,7 @@ namespace {
 /// A geometric cable runs through its points in the order of their abscissae, whatever couplings they belong to. Its
 /// length is that of the polyline, which cuts the corners of a curved path.
 void number_cable_points(Model& model, int number) {
-  CableModel& cable = model.cables[number];
+  GeometricCableModel& cable = model.cables[number];
   std::vector<PointModel*> points;
   for (PointModel& point : model.points) {
     if (point.line.cable == number) points.push_back(&point);
@@ -45,7 +45,7 @@ void number_cable_points(Model& model, int number) {
   cable.cable.length = rod::cable_length(cable.cable, cable.base, z).value;
 }
 
-/// Three rows of the solids, in the order in which they were asked for: points first, then what ties follow.
+/// Rows and unknowns of ties, and the list of all rows of solids: what ties follow first, then sliding points.
 void number_ties(Model& model) {
   model.first_followed = model.unknowns;
   std::vector<SolidRow> rows;
@@ -88,7 +88,7 @@ void number_unknowns(Model& model) {
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i) {
     number_cable_points(model, static_cast<int>(i));
-    CableModel& cable = model.cables[i];
+    GeometricCableModel& cable = model.cables[i];
     cable.unknown = model.unknowns;
     model.unknowns += cable.cable.coordinates();
     cable.length_row = model.rows++;
@@ -106,7 +106,7 @@ void number_unknowns(Model& model) {
       RodModel& rod = model.rods[actuator.line.rod];
       const auto& base = rod.rod.base;
       const auto at = std::find_if(base.begin(), base.end(), [&](const rod::BaseMotion& b) {
-        return b.turns == turns && b.axis == actuator.unknown;
+        return b.turns == turns && b.axis == actuator.axis;
       });
       actuator.unknown = rod.unknown + static_cast<int>(at - base.begin());
       if (turns) rod.floats = false;  // what drives it counts from the start
@@ -225,8 +225,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   for (const auto& [name, load] : scene.loads) build_load(model, name, load);
   for (std::size_t i = 0; i < scene.couplings.size(); ++i) {
     const auto number = static_cast<int>(i);
-    if (const Slide* slide = std::get_if<Slide>(&scene.couplings[i])) build_slide(model, number, *slide);
-    if (const Tie* tie = std::get_if<Tie>(&scene.couplings[i])) build_tie(model, number, *tie);
+    std::visit([&](const auto& own) { build_coupling(model, number, own); }, scene.couplings[i]);
   }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);

@@ -72,7 +72,7 @@ struct RodModel {
 };
 
 /// The massless cable without stiffness, the paper's baseline: all its coordinates are unknowns z.
-struct CableModel {
+struct GeometricCableModel {
   std::string name;
   rod::GeometricCable cable;
   std::vector<Vec3> path;  ///< [m] in the world at t = 0
@@ -137,6 +137,7 @@ struct ActuatorModel {
   Drive drive;
   std::optional<rod::Tendon> tendon;  ///< pulled instead of the base
   double tendon_length = 0.0;         ///< [m] at t = 0
+  int axis = -1;                      ///< of its base's motion
   int unknown = -1;                   ///< of its base coordinate in z
   int row = -1;                       ///< if driven by displacement or angle
 };
@@ -201,7 +202,7 @@ struct Model {
   Scene scene;
   std::vector<SolidModel> solids;
   std::vector<RodModel> rods;
-  std::vector<CableModel> cables;
+  std::vector<GeometricCableModel> cables;
   std::vector<PointModel> points;
   std::vector<PointModel> dropped;  ///< asked for, but determined by others: no rows, only watched
   std::vector<TieModel> ties;

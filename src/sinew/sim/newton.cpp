@@ -125,7 +125,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       stiffness = std::max(stiffness, inertia_of(context));
     }
     if (rules.fixed && report.newton == rules.limit && rules.evaluation == Evaluation::motion) return complete();
-    context.first_guess = report.newton == 0 && context.rate > 0.0 && !rules.fixed;
+    // (A linearised step is that of the exact tangent there, and has no second round to make up for what is left out.)
+    context.at_start = report.newton == 0 && context.rate > 0.0 && !rules.fixed;
     // The paper's step is not looked at before it is made.
     const bool blind = rules.fixed && report.newton < rules.limit;
     here.evaluate(context, iterate.state, report.times, blind ? std::optional(solid::Tangent::definite) : std::nullopt);
@@ -145,8 +146,10 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     }
     if (!rules.fixed && report.newton == rules.limit) return fail(Status::max_iterations, "");
     std::string failed;
+    const char* const single =
+        context.model.scene.newton.precision == linalg::Precision::float32 ? ", in `newton: {precision: single}`" : "";
     if (!here.factor(rules.fixed ? solid::Tangent::definite : solid::Tangent::exact, rules.wanted, failed))
-      return fail(Status::singular, failed);
+      return fail(Status::singular, failed + single);
     report.rotated |= here.rotated();
     if (context.rate == 0.0) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
@@ -156,6 +159,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       here.solve(increment);
     }
     report.redundant |= increment.reduced.redundant;
+    if (here.stalled()) return fail(Status::singular, std::string("solids") + single);
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
     if (rules.across) {
       change_along(at, memory, iterate, report.times);

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "sinew/constraint/sliding.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
 
@@ -25,7 +26,7 @@ void add_points(RodRows& rod) {
     const double s = iterate.points[k].s;
     const Vec3 lambda = iterate.lambda.segment<3>(point.row);
     const rod::CurvePoint on_curve = rod::curve_point(rod.shape(), s);
-    const Vec3 gap = solid_point(rod.context().model, iterate, point.solid, point.where) - on_curve.position;
+    const Vec3 P = solid_point(rod.context().model, iterate, point.solid, point.where), gap = P - on_curve.position;
     problem.c.segment<3>(point.row) = gap;
     for (int i = 0; i < 3; ++i) rod.attach(rod.row(point.row + i), on_curve, Vec3::Zero(), Vec3::Unit(i));
     Reduced& reduced = rod.reduced();
@@ -36,8 +37,7 @@ void add_points(RodRows& rod) {
       continue;
     }
     rod.slide(s, lambda, point.unknown);
-    const Vec3 t = on_curve.derivative.normalized();
-    reduced.violation = std::max(reduced.violation, (gap - t.dot(gap) * t).norm());
+    reduced.violation = std::max(reduced.violation, constraint::violation(on_curve, P));
     problem.G.add(point.row, point.unknown, on_curve.derivative);
     problem.r[point.unknown] = lambda.dot(on_curve.derivative);
     reduced.largest = std::max(reduced.largest, std::abs(problem.r[point.unknown]));
@@ -46,7 +46,7 @@ void add_points(RodRows& rod) {
 
 /// The massless cable: constant length with the tension as its multiplier, points held by rows with G = I.
 void add_cable(const StepContext& context, const State& iterate, int number, Reduced& reduced) {
-  const CableModel& model = context.model.cables[number];
+  const GeometricCableModel& model = context.model.cables[number];
   const Eigen::VectorXd& z = iterate.cables[number].z;
   solve::CoupledProblem& problem = reduced.problem;
   rod::CableLength& length = reduced.cables[number];
@@ -137,6 +137,13 @@ void linearize(const StepContext& context, const State& iterate, Reduced& reduce
       count(problem.r[next] / (rod.rod.base[i].turns ? rod.rod.length() : 1.0));
   }
   for (; next < model.unknowns; ++next) count(problem.r[next]);
+}
+
+void clear(const Model& model, solve::RightSide& side) {
+  side.r.setZero(model.unknowns);
+  side.c.setZero(model.rows);
+  side.chains.resize(model.rods.size());
+  for (std::size_t n = 0; n < model.rods.size(); ++n) side.chains[n].setZero(model.rods[n].rod.strain_coordinates());
 }
 
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

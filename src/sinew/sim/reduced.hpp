@@ -36,6 +36,9 @@ struct Reduced {
 /// again.
 void linearize(const StepContext& context, const State& iterate, Reduced& reduced);
 
+/// Zeros for every reduced unknown, row and strain, in the memory of an earlier one.
+void clear(const Model& model, solve::RightSide& side);
+
 /// Moves every reduced unknown and multiplier of an iterate by `fraction` of a solution.
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate);

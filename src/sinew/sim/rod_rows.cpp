@@ -67,7 +67,7 @@ void RodRows::add_masses() {
       load.offset = mass.offset;
       load.force = mass.mass * (acceleration - context_.gravity);
       load.weight = mass.mass * rate * rate;
-      load.bends = !context_.first_guess;
+      load.bends = !context_.at_start;
       load.spread = true;
       load.station = static_cast<int>(k);
       acting += mass.mass * (acceleration.norm() + weight);
@@ -160,6 +160,9 @@ void RodRows::finish() {
   std::merge(own_.loads.begin(), own_.loads.end(), own_.masses.begin(), own_.masses.end(), own_.sorted.begin(),
              earlier);
   rod::Equations& equations = own_.equations;
+  solve::ChainPart& part = problem().chains[number_];
+  std::swap(part.chain, equations.chain);  // their memory back
+  std::swap(reduced_.internal[number_], equations.internal);
   rod::make_equations(own_.shape, rod::conservative(own_.sorted), static_cast<int>(own_.slides.size()), equations);
   rod::add_loads(own_.shape, own_.sorted, equations);
   rod::add_elasticity(rod, iterate_.rods[number_].q, context_.start.rods[number_].q, context_.rate, equations);
@@ -169,7 +172,6 @@ void RodRows::finish() {
     own_.border.push_back(own_.slides[i]);
   }
 
-  solve::ChainPart& part = problem().chains[number_];
   part.base = own_.shape.base;
   part.first_base = model.unknown;
   part.whole_at.clear();

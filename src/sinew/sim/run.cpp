@@ -17,10 +17,6 @@ StepReport taken(StepResult result, State& state) {
   return result.report;
 }
 
-}  // namespace
-
-namespace {
-
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
   if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
   if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/linalg/precision.hpp"
 #include "sinew/solid/body.hpp"
 #include "sinew/solid/laws.hpp"
 
@@ -335,6 +336,8 @@ struct Newton {
   int iterations = 0;       ///< 0: until the tolerance is met; n: exactly n linearisations (1 is the paper's step)
   int limit = 25;           ///< with iterations = 0: not converged beyond this, and the step is halved
   double tolerance = 1e-9;  ///< relative to the force and to the size of the scene (sim/step.hpp)
+  /// In which the matrices of volumes are factored; solutions are refined to double precision.
+  linalg::Precision precision = linalg::Precision::float64;
 };
 
 /// How often views are written.

@@ -41,6 +41,12 @@ Vec3 reaction(const Model& model, const State& state, const OutputModel& output)
   return sum;
 }
 
+SignalGroup position_group(const OutputModel& output) {
+  return {named(output.name, {"x", "y", "z"}),
+          [=](const Model& model, const State& state) { return numbers(output_position(model, state, output)); }};
+}
+
+// Without a default, so that the compiler asks where a new quantity belongs.
 SignalGroup solid_group(const OutputModel& output) {
   static constexpr std::initializer_list<const char*> kSix = {"xx", "yy", "zz", "yz", "xz", "xy"};
   static constexpr std::initializer_list<const char*> kStress = {
@@ -70,10 +76,12 @@ SignalGroup solid_group(const OutputModel& output) {
     case Quantity::reaction:
       return {named(output.name, {"x", "y", "z"}),
               [=](const Model& model, const State& state) { return numbers(reaction(model, state, output)); }};
-    default:
-      return {named(output.name, {"x", "y", "z"}),
-              [=](const Model& model, const State& state) { return numbers(output_position(model, state, output)); }};
+    case Quantity::position:
+    case Quantity::force:
+    case Quantity::moment:
+      break;
   }
+  return position_group(output);
 }
 
 SignalGroup output_group(const OutputModel& output) {
@@ -100,11 +108,12 @@ SignalGroup output_group(const OutputModel& output) {
                 const rod::SectionStress stress = section_stress(model, state, rod, s);
                 return std::vector<double>{stress.axial, stress.bending, stress.torsion, stress.von_mises};
               }};
-    default:
+    case Quantity::position:
+    case Quantity::displacement:
+    case Quantity::reaction:
       break;
   }
-  return {named(output.name, {"x", "y", "z"}),
-          [=](const Model& model, const State& state) { return numbers(output_position(model, state, output)); }};
+  return position_group(output);
 }
 
 SignalGroup motor_group(const Model& all) {
@@ -190,7 +199,7 @@ double dropped_gap(const Model& model, const State& state) {
     }
     const Vec3 P = solid_point(model, state, point.solid, point.where);
     s = constraint::project(shape, s, P);
-    if (s <= rod.length()) gap = std::max(gap, constraint::violation(shape, s, P));
+    if (s <= rod.length()) gap = std::max(gap, constraint::violation(rod::curve_point(shape, s), P));
   }
   return gap;
 }

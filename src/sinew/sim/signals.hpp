@@ -18,11 +18,12 @@ struct SignalGroup {
 /// In the order of the columns:
 ///   mode.frequency [Hz], of a modal analysis only, negative where the equilibrium is unstable;
 ///   <output>.x|y|z [m], or .torsion .. .shear_z [1/m, -] of `strain`, .x|y|z in the axes of the cross-section of
-///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; <actuator>.displacement [m] and
-///   .force [N], or .angle [rad] and .torque [N m]; energy.kinetic|elastic|weight|work|dissipated [J]: weight is that
-///   of the gravitational field, 0 at the start; work is done by motors, loads and moving
-///   supports of solids, dissipated is what is missing in the balance: damping of the material and of the time step
-///   (and, with a minus, work of frames that move bases and ties of rods).
+///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; of a
+///   solid also .xx .. of `strain` and `stress` and .x|y|z of `reaction` (NOTATION.md has all); <actuator>.displacement
+///   [m] and .force [N], or .angle [rad] and .torque [N m]; energy.kinetic|elastic|weight|work|dissipated [J]: weight
+///   is that of the gravitational field, 0 at the start; work is done by motors, loads and moving supports of solids,
+///   dissipated is what is missing in the balance: damping of the material and of the time step (and, with a minus,
+///   work of frames that move bases and ties of rods).
 std::vector<SignalGroup> signal_groups(const Model& model);
 
 std::vector<std::string> signal_names(const Model& model);

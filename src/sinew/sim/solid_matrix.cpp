@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include "sinew/sim/building.hpp"
@@ -158,11 +159,16 @@ void plan_factor(Model& model, int number) {
       if (body.unknown(axis, node) >= 0) slots[static_cast<std::size_t>(body.unknown(axis, node))] = 4 * node + axis;
     }
   }
-  solid.fronts = linalg::SparseFactor::make_plan(pattern_of(body), solid.border, slots);
-  if (solid.fronts->panels > std::numeric_limits<std::uint32_t>::max() ||
-      solid.fronts->numbers() > std::numeric_limits<std::int32_t>::max())
-    building::reject("solids." + solid.name, std::to_string(body.unknowns) + " unknowns",
-                     "its factor would take more than 32 GB", "use a coarser mesh");
+  const auto too_fine = [&](const std::string& what) {
+    building::reject("solids." + solid.name, std::to_string(body.unknowns) + " unknowns", what, "use a coarser mesh");
+  };
+  try {
+    solid.fronts = linalg::SparseFactor::make_plan(pattern_of(body), solid.border, slots, model.scene.newton.precision);
+  } catch (const std::length_error&) {
+    too_fine("a block of its factor would have more than 2^31 numbers");
+  }
+  if (solid.fronts->numbers() > std::numeric_limits<std::int32_t>::max())
+    too_fine("its matrix would have more than 2^31 numbers");
   const auto add_places = [&](std::span<const int> nodes, std::vector<BlockPlace>& places) {
     each_pair(nodes, [&](std::size_t a, std::size_t b) { places.push_back(block_place(solid, nodes[a], nodes[b])); });
   };

@@ -34,7 +34,7 @@ State initial_state(const Model& model) {
     own.velocity.setZero(3, own.masses.cols());
     own.internal = no_internal(rod);
   }
-  for (const CableModel& cable : model.cables)
+  for (const GeometricCableModel& cable : model.cables)
     state.cables.push_back({Eigen::VectorXd::Zero(cable.cable.coordinates())});
   state.lambda.setZero(model.rows);
   for (const PointModel& point : model.points) {
@@ -62,7 +62,7 @@ State initial_state(const Model& model) {
 
 namespace {
 
-/// Visits every number of a state in the order of the record; sizes are the model's.
+/// Visits every number of a state in the order of the record (kStateLayout); sizes are the model's.
 template <class StateType, class Visit>
 void each_number(StateType& state, const Visit& visit) {
   visit(state.time);

@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "sinew/sim/model.hpp"
@@ -27,7 +28,9 @@ struct CableState {
 
 struct PointState {
   double s = 0.0;  ///< [m] abscissa
-  bool on = true;  ///< false: the rod's end has passed it, the row is off
+  /// False: the rod's end has passed it, and its rows are off. sim/step_ends switches it; sim/reduced leaves its rows
+  /// empty, sim/free_motion its force and its part of H, sim/view does not show it.
+  bool on = true;
 };
 
 /// What has been put into the rods and solids since the start [J].
@@ -66,6 +69,9 @@ State initial_state(const Model& model);
 /// All numbers are.
 bool finite(const State& state);
 
+/// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
+/// refused.
+inline constexpr std::uint64_t kStateLayout = 3;
 /// The state as plain numbers in a fixed order, and back. unpack throws std::invalid_argument if the size is not this
 /// model's.
 std::vector<double> pack(const State& state);

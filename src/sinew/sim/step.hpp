@@ -26,7 +26,7 @@ Command command_of(const Model& model, const State& state);
 /// The command that is a part of the way from one to another.
 Command between(Command from, const Command& to, double part);
 
-/// Seconds spent, summed over the iterations of a step and all threads.
+/// Seconds spent, summed over the iterations of a step and over what runs side by side: each volume, and the rods.
 struct StageTimes {
   double forces = 0.0, assembly = 0.0, factor = 0.0, compliance = 0.0, rods = 0.0, solve = 0.0;
   double step = 0.0;  ///< from its beginning to its end, halved attempts included: all stages and what is between them

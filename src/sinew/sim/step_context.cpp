@@ -8,7 +8,7 @@ void StepContext::set(const State& from, const Command& wanted, double duration)
   rate = model.scene.analysis == Analysis::dynamic ? 1.0 / duration : 0.0;
   command = wanted;
   gravity = model.scene.gravity;
-  first_guess = false;
+  at_start = false;
   displacement.clear();
   for (const auto& [name, frame] : model.scene.frames)
     displacement.push_back(frame_displacement(frame, start.time + h));
@@ -21,7 +21,7 @@ void StepContext::set(const State& from, const Command& wanted, double duration)
   bases.clear();
   for (const RodModel& rod : model.rods) bases.push_back(compose(moved(rod.frame), rod.base));
   cable_bases.clear();
-  for (const CableModel& cable : model.cables) cable_bases.push_back(compose(moved(cable.frame), cable.base));
+  for (const GeometricCableModel& cable : model.cables) cable_bases.push_back(compose(moved(cable.frame), cable.base));
 }
 
 StepContext make_context(const Model& model, const State& start, const Command& command, double h) {

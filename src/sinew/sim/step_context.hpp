@@ -20,7 +20,7 @@ struct StepContext {
   Vec3 gravity;       ///< [m/s^2] then
   /// The iterate is where the step starts: the forces that would stop a moving rod there are no forces that act along
   /// the step, and stay out of its geometric stiffness, where they would count as compression.
-  bool first_guess = false;
+  bool at_start = false;
   std::vector<Placement> displacement;  ///< of each frame, at the end of the step
   std::vector<solid::StepStart> solids;
   std::vector<Placement> bases, cable_bases;  ///< of each rod and cable, at the end of the step

@@ -204,8 +204,8 @@ const RodModel* exhausted(const Model& model, const State& state) {
 std::string broken_cell(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const solid::Body& body = model.solids[i].body;
-    for (const int cell : solid::folded_cells(body, state.solids[i].x)) {
-      if (solid::invertible(body.of(cell).law)) continue;
+    if (!state.solids[i].x.allFinite()) continue;
+    for (const int cell : solid::ended_cells(body, state.solids[i].x)) {
       const Vec3 rest = body.at_nodes(cell, body.rest).rowwise().mean();
       char text[160];
       std::snprintf(text, sizeof text, "cell %d, at rest near (%.4g, %.4g, %.4g) m", cell, rest.x(), rest.y(),

@@ -15,7 +15,7 @@ namespace {
 Eigen::Matrix<double, 6, 1> six(const solid::Mat3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(0, 2)}; }
 
 RodSnapshot sample_cable(const Model& model, const State& state, int number) {
-  const CableModel& cable = model.cables[number];
+  const GeometricCableModel& cable = model.cables[number];
   const Eigen::VectorXd& z = state.cables[number].z;
   const Placement base = cable_base(model, state, number);
   const int m = cable.cable.points + 1;

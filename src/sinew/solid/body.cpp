@@ -171,10 +171,6 @@ bool viscous(const Body& body, int e) {
   return moduli.mu > 0.0 || moduli.lambda != 0.0;
 }
 
-}  // namespace
-
-namespace {
-
 void scatter(const TetBatch& batch, int i, const Eight (&own)[4][3], Eigen::Matrix3Xd& force) {
   for (int a = 0; a < 4; ++a) {
     for (int axis = 0; axis < 3; ++axis) force(axis, batch.node[a][i]) += own[a][axis][i];
@@ -277,6 +273,16 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
 }
 
 double mass_factor(const Body& body, double rate) { return (rate + body.damping_mass) * rate; }
+
+std::vector<int> ended_cells(const Body& body, const Eigen::Matrix3Xd& x) {
+  std::vector<int> ended;
+  ElementResponse response;
+  for (int e = 0; e < body.elements(); ++e) {
+    evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::none, Tangent::exact, response);
+    if (!std::isfinite(response.energy)) ended.push_back(e);
+  }
+  return ended;
+}
 
 std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x) {
   std::vector<int> folded;

@@ -105,6 +105,9 @@ double mass_factor(const Body& body, double rate);
 /// Cells whose volume has vanished or turned inside out at one of their quadrature points.
 std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x);
 
+/// Cells whose law has ended: their energy is not finite.
+std::vector<int> ended_cells(const Body& body, const Eigen::Matrix3Xd& x);
+
 /// Cauchy stress sigma = P F^T / J [Pa] at a point, with its element's share of the mean dilatation. NaN where the
 /// element is flat or inside out, or a quadrature point is beyond where its law ends.
 Mat3 cauchy_stress(const Body& body, const EmbeddedPoint& point, const Eigen::Matrix3Xd& x);

@@ -1,6 +1,7 @@
 // The corotational law: linear elasticity in a frame that turns with the material. With the polar decomposition F = R S
 //     w = mu |F - R|^2,   v = tr(R^T F) - 3,   U = lambda / 2 v^2.
-// Derivation in README.md of this folder.
+// Derivation in README.md of this folder. Forces and the definite tangent of linear tetrahedra of this law come from
+// tet_batch_lanes.cpp, which says the same for eight at a time: change both (tests/solid/tet_batch_test compares them).
 #pragma once
 
 #include "sinew/solid/law.hpp"

@@ -49,7 +49,7 @@ bool Bounded::minimise(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const
   iterations_ = 0;
   at_.assign(static_cast<std::size_t>(n), At::between);
   if (n == 0) return true;
-  if (!H.allFinite() || !g.allFinite() || (lower.array() > upper.array()).any()) return false;
+  if (!H.allFinite() || !g.allFinite() || !(lower.array() <= upper.array()).all()) return false;
   for (int i = 0; i < n; ++i) {
     x[i] = std::isfinite(x[i]) ? std::clamp(x[i], lower[i], upper[i]) : std::clamp(0.0, lower[i], upper[i]);
     if (lower[i] == upper[i]) at_[i] = At::lower;

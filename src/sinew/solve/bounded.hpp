@@ -12,7 +12,8 @@ namespace sinew::solve {
 class Bounded {
  public:
   /// H symmetric positive definite; bounds may be infinite. `x` is where it starts, if between the bounds, and the
-  /// solution. False where H is not positive definite or a number is not finite: x is then the start.
+  /// solution. False where H is not positive definite, a bound is above the other, or a number is
+  /// not one: x means nothing then.
   bool minimise(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Eigen::VectorXd& lower,
                 const Eigen::VectorXd& upper, Eigen::VectorXd& x);
   /// Which bound each unknown ended at.

@@ -13,7 +13,7 @@ using linalg::Matrix6X;
 using linalg::Vec6;
 
 /// A solution is good enough with such a residual, and refined while it is larger than the first.
-constexpr double kAimed = 1e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
+constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
 /// A compliance smaller than this part of the largest one counts as none.
 constexpr double kVanished = 1e-10;
 
@@ -124,14 +124,14 @@ double largest(const Eigen::MatrixBase<Vector>& v) {
   return v.size() > 0 ? v.template lpNorm<Eigen::Infinity>() : 0.0;
 }
 
-/// to += from.
-void add_solution(const CoupledSolution& from, CoupledSolution& to) {
-  to.dz += from.dz;
-  to.dlambda += from.dlambda;
-  for (std::size_t n = 0; n < to.dq.size(); ++n) to.dq[n] += from.dq[n];
-}
-
 }  // namespace
+
+CoupledSolution& CoupledSolution::operator+=(const CoupledSolution& other) {
+  dz += other.dz;
+  dlambda += other.dlambda;
+  for (std::size_t n = 0; n < dq.size(); ++n) dq[n] += other.dq[n];
+  return *this;
+}
 
 Eigen::MatrixXd written_out(const CoupledProblem& problem) {
   Eigen::Index size = border_size(problem);
@@ -250,9 +250,11 @@ void CoupledFactor::weigh() {
   const int nz = unknowns_of(problem), size = border_size(problem);
   diagonal_.resize(size);
   for (int i = 0; i < size; ++i) diagonal_[i] = std::abs(symmetric_.column(place_[i])[place_[i]]);
-  double most = 0.0;
+  double most = 0.0;  // but for rows that hold nothing now
   for (const VolumePart& volume : problem.volumes) {
-    for (const int row : volume.at) most = std::max(most, diagonal_[nz + row]);
+    for (Eigen::Index i = 0; i < volume.W.rows(); ++i) {
+      if (volume.W(i, i) != 0.0) most = std::max(most, diagonal_[nz + volume.at[static_cast<std::size_t>(i)]]);
+    }
   }
   for (const ChainPart& part : problem.chains) {
     for (const int i : part.at) most = i >= nz ? std::max(most, diagonal_[i]) : most;
@@ -484,7 +486,7 @@ void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {
       for (int i = 0; i < kRefinements && solution.residual > kAimed && std::isfinite(solution.residual); ++i) {
         if (kind_ == Kind::singular) break;
         solve_once(rest_, correction_);
-        add_solution(solution, correction_);
+        correction_ += solution;
         const double relative = residual(right, correction_, rest_);
         if (!(relative < solution.residual)) break;
         std::swap(solution, correction_);

@@ -58,7 +58,8 @@ struct ChainPart {
 ///     B dz + G^T dlambda + (chains) = -r        equilibrium
 ///     G dz - W dlambda   + (chains) =  c        constraints: c + H dx = G dz + ..., with volumes moving by
 ///                                               dx = dx_free + A_x^-1 H^T dlambda
-/// so W = H A_x^-1 H^T and c is the violation after the free motion. Eliminating the chains adds the rods' share to W:
+/// so W = H A_x^-1 H^T and c is the violation after the free motion. Whoever puts the problem together leaves c before
+/// it; the motion is added to a RightSide (`sim/free_motion` `push`). Eliminating the chains adds the rods' share to W:
 /// the paper's (11), (12). What remains, the border, needs no inverse of B, which is singular for a straight cable
 /// whose abscissae are unknown, and indefinite under tension.
 struct CoupledProblem {
@@ -85,12 +86,15 @@ struct CoupledSolution {
   bool ok = false;                  ///< finite, and the equations hold to rounding
   bool redundant = false;           ///< rows depended on each other; the multipliers returned are the smallest that do
   double residual = 0.0;            ///< largest relative residual of the scaled equations
+
+  /// Adds the unknowns of another solution.
+  CoupledSolution& operator+=(const CoupledSolution& other);
 };
 
 /// Factors once, solves often, and keeps its memory for the next problem. Chains are eliminated in time proportional to
 /// their length. The border is dense; solutions are refined. A symmetric one is factored as such, the rows that feel a
 /// compliance first, then z; a compliance that vanishes in some direction (a point of which all nodes are held) is
-/// given a hundred-millionth of the others' and refined away. Where that is not good enough, an LU serves. Where a
+/// given a ten-billionth of the others' and refined away. Where that is not good enough, an LU serves. Where a
 /// chain has no good pivots (strains that nothing but the constraints hold), it joins the border; where the border is
 /// singular, a complete orthogonal decomposition takes over.
 class CoupledFactor {

@@ -14,7 +14,8 @@ namespace sinew::threads {
 /// may ask at a time, and each task in turn for its own.
 class Crew {
  public:
-  /// `size` threads in all, the one that asks included; below one counts as one.
+  static constexpr int kMost = 64;
+  /// `size` threads in all, the one that asks included, from 1 to kMost; fewer where the system gives no more.
   explicit Crew(int size = 1);
   ~Crew();
   Crew(const Crew&) = delete;

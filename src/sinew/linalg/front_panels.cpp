@@ -1,0 +1,237 @@
+#include "sinew/linalg/front_panels.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace sinew::linalg {
+
+template <class Real>
+FrontPanels<Real>::FrontPanels(std::shared_ptr<const Fronts> plan, const KernelsOf<Real>& kernels)
+    : plan_(std::move(plan)), kernels_(&kernels) {
+  constexpr int kOwn = kLanesOf<Real>;
+  if (plan_->precision == Precision::float64 && std::is_same_v<Real, float>)
+    throw std::invalid_argument("FrontPanels: a plan for other numbers");
+  panels_.assign(plan_->panels + kOwn, Real(0));
+  updates_.assign(plan_->updates + kOwn, Real(0));
+  diagonal_.setZero(size());
+  pivots_.setZero(size());
+  signs_.setOnes(size());
+  int largest = kOwn;  // numbers that hold any front's unknowns
+  for (const Front& front : plan_->fronts) largest = std::max(largest, whole_lanes(front.rows(), kOwn) + kOwn);
+  minus_W_.setZero(borders() > 0 ? whole_lanes(borders(), kOwn) + kOwn : 0, borders());
+  own_.setZero(largest);
+  below_ = own_;
+  whole_.setZero(size());
+  bordering_.setZero(whole_lanes(borders(), kOwn) + kOwn);
+}
+
+template <class Real>
+bool FrontPanels<Real>::factor(const std::vector<double>& values, const std::vector<double>& border_values,
+                               threads::Crew& crew) {
+  values_ = values.data();
+  border_values_ = border_values.data();
+  return factor_fronts(crew);
+}
+
+template <class Real>
+bool FrontPanels<Real>::factor_fronts(threads::Crew& crew) {
+  minus_W_.setZero();
+  while (rooms_.size() < std::min(static_cast<std::size_t>(crew.size()), plan_->parts.size()))
+    rooms_.emplace_back(plan_->part_updates + kLanesOf<Real>);
+  if (crew.size() == 1) {  // updates are added while they are in the caches
+    Real* const room = rooms_.empty() ? nullptr : rooms_.front().data();
+    return std::all_of(plan_->fronts.begin(), plan_->fronts.end(),
+                       [&](const Front& front) { return factor_front(front, room, crew); });
+  }
+  // No border row reaches two parts: each writes its own columns of W.
+  std::atomic<bool> ok = true;
+  std::atomic<std::uint64_t> taken = 0;  // rooms, a bit each
+  static_assert(threads::Crew::kMost <= 64);
+  crew.each(static_cast<int>(plan_->parts.size()), [&](int i) {
+    std::uint64_t before = taken, own = 0;
+    do {
+      own = ~before & (before + 1);  // the lowest that is free
+    } while (!taken.compare_exchange_weak(before, before | own));
+    Real* const room = rooms_[static_cast<std::size_t>(std::countr_zero(own))].data();
+    const Fronts::Part& part = plan_->parts[static_cast<std::size_t>(i)];
+    for (int s = part.first; s < part.end && ok; ++s) {
+      if (!factor_front(plan_->fronts[static_cast<std::size_t>(s)], room, threads::Crew::none())) ok = false;
+    }
+    taken &= ~own;
+  });
+  for (const int s : plan_->top) {
+    if (!ok || !factor_front(plan_->fronts[static_cast<std::size_t>(s)], nullptr, crew)) return false;
+  }
+  return ok;
+}
+
+/// Its entries of A and of the border, where they belong.
+template <class Real>
+void FrontPanels<Real>::start_panel(const Front& front) {
+  Real* const panel = panels_.data() + front.panel;
+  const std::ptrdiff_t stride = front.stride;
+  std::fill_n(panel, stride * front.columns, Real(0));
+  constexpr std::uint8_t kAll = 7;
+  for (std::size_t k = front.first_block; k < front.first_block + static_cast<std::size_t>(front.block_count); ++k) {
+    const Block& block = plan_->blocks[k];
+    const double* from = values_ + kBlockSize * (k + 1);
+    Real* to = panel + block.into;
+    if (block.rows == kAll && block.columns == kAll) {
+      for (int c = 0; c < 3; ++c, from += 4, to += stride)
+        std::transform(from, from + 3, to, [](double value) { return static_cast<Real>(value); });
+      continue;
+    }
+    for (int c = 0; c < 3; ++c, from += 4) {
+      if (!(block.columns >> c & 1)) continue;
+      Real* next = to;
+      for (int r = 0; r < 3; ++r) {
+        if (block.rows >> r & 1) *next++ = static_cast<Real>(from[r]);
+      }
+      to += stride;
+    }
+  }
+  for (int j = 0; j < front.columns; ++j)
+    diagonal_[front.first + j] = static_cast<double>(std::abs(panel[j * (stride + 1)]));
+  const auto* entry = plan_->border_entries.data() + front.first_border_entry;
+  for (int k = 0; k < front.border_entry_count; ++k, ++entry)
+    panel[entry->into] = static_cast<Real>(border_values_[entry->from]);
+}
+
+template <class Real>
+bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Crew& crew) {
+  constexpr int kColumns = 96;  // of a panel at a time
+  Real* const panel = panels_.data() + front.panel;
+  const int height = front.height();
+  Real* const signs = signs_.data() + front.first;
+  start_panel(front);
+  add_children(front, room, true, crew);
+  for (int first = 0; first < front.columns; first += kColumns) {
+    const int count = std::min(kColumns, front.columns - first), end = first + count;
+    Real* const own = panel + static_cast<std::ptrdiff_t>(first) * (front.stride + 1);
+    if (!kernels_->factor(own, front.stride, count, height - first, pivots_.data() + front.first + first,
+                          signs + first))
+      return false;
+    if (end < front.columns)
+      update(crew, panel + static_cast<std::ptrdiff_t>(end) * (front.stride + 1), front.stride, own + count,
+             front.stride, height - end, front.columns - end, count, signs + first, false);
+  }
+  update(crew, update_of(front, room), front.update_stride, panel + front.columns, front.stride,
+         front.below + front.borders, front.below, front.columns, signs, true);
+  add_children(front, room, false, crew);
+  kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
+                   static_cast<int>(minus_W_.outerStride()), panel + front.rows(), front.stride, front.borders,
+                   front.borders, front.columns, signs, false);
+  return true;
+}
+
+/// Kernels::update; much of it in strips of columns that several threads can take. By size alone: how columns go
+/// together decides how sums are rounded.
+template <class Real>
+void FrontPanels<Real>::update(threads::Crew& crew, Real* C, int C_stride, const Real* A, int A_stride, int height,
+                               int columns, int depth, const Real* signs, bool fresh) {
+  constexpr int kStrip = 96;
+  constexpr double kWorthIt = 2e6;
+  if (static_cast<double>(height) * columns * depth < kWorthIt) {
+    kernels_->update(C, C_stride, A, A_stride, height, columns, depth, signs, fresh);
+    return;
+  }
+  crew.each((columns + kStrip - 1) / kStrip, [&](int i) {
+    const int first = kStrip * i;
+    kernels_->update(C + static_cast<std::ptrdiff_t>(first) * (C_stride + 1), C_stride, A + first, A_stride,
+                     height - first, std::min(kStrip, columns - first), depth, signs, fresh);
+  });
+}
+
+/// Adds the updates of a front's children to its panel, or to its own update.
+template <class Real>
+void FrontPanels<Real>::add_children(const Front& front, Real* room, bool to_panel, threads::Crew& crew) {
+  constexpr int kStrip = 256;
+  for (const int c : plan_->children_of(front)) {
+    const Front& own = plan_->fronts[static_cast<std::size_t>(c)];
+    const int first = to_panel ? 0 : own.to_panel, end = to_panel ? own.to_panel : own.below;
+    crew.each((end - first + kStrip - 1) / kStrip, [&](int i) {
+      const int from = first + kStrip * i;
+      kernels_->add(update_of(own, room), own.update_stride, from, std::min(end, from + kStrip),
+                    plan_->runs.data() + own.first_run, own.run_count,
+                    to_panel ? panels_.data() + front.panel : update_of(front, room),
+                    to_panel ? front.stride : front.update_stride, to_panel ? 0 : front.columns);
+    });
+  }
+}
+
+template <class Real>
+void FrontPanels<Real>::half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const {
+  for (int i = 0; i < size(); ++i) y[plan_->place[i]] = b[i];
+  for (const Front& front : plan_->fronts) {
+    const Real* panel = panels_.data() + front.panel;
+    own_.head(front.columns) = y.segment(front.first, front.columns).template cast<Real>();
+    kernels_->solve(panel, front.stride, front.columns, own_.data());
+    y.segment(front.first, front.columns) = own_.head(front.columns).template cast<double>();
+    below_.head(whole_lanes(front.below, kLanesOf<Real>)).setZero();
+    kernels_->multiply(panel + front.columns, front.stride, front.below, front.columns, own_.data(), below_.data());
+    const std::span<const int> rows = plan_->rows_below(front);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      y[rows[i]] += static_cast<double>(below_[static_cast<Eigen::Index>(i)]);
+  }
+}
+
+template <class Real>
+void FrontPanels<Real>::back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const {
+  whole_ = signs_.cwiseProduct(y.template cast<Real>());
+  for (auto front = plan_->fronts.rbegin(); front != plan_->fronts.rend(); ++front) {
+    const Real* panel = panels_.data() + front->panel;
+    const std::span<const int> rows = plan_->rows_below(*front);
+    for (std::size_t i = 0; i < rows.size(); ++i) below_[static_cast<Eigen::Index>(i)] = whole_[rows[i]];
+    Real* own = whole_.data() + front->first;
+    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below, front->columns, below_.data(),
+                                  own);
+    kernels_->solve_transposed(panel, front->stride, front->columns, own);
+  }
+  for (int i = 0; i < size(); ++i) x[i] = static_cast<double>(whole_[plan_->place[i]]);
+}
+
+template <class Real>
+void FrontPanels<Real>::compliance(Eigen::MatrixXd& W) const {
+  W.resize(borders(), borders());
+  for (int j = 0; j < borders(); ++j) {
+    for (int i = 0; i <= j; ++i) {
+      const auto [column, row] = std::minmax({plan_->border[i], plan_->border[j]});
+      W(j, i) = W(i, j) = -static_cast<double>(minus_W_(row, column));
+    }
+  }
+}
+
+template <class Real>
+void FrontPanels<Real>::border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const {
+  bordering_.setZero();
+  for (const Front& front : plan_->fronts) {
+    const Real* border = panels_.data() + front.panel + front.rows();
+    own_.head(front.columns) = y.segment(front.first, front.columns).template cast<Real>();
+    kernels_->multiply(border, front.stride, front.borders, front.columns, own_.data(), &bordering_[front.border]);
+  }
+  for (int i = 0; i < borders(); ++i) u[i] = -static_cast<double>(bordering_[plan_->border[i]]);
+}
+
+template <class Real>
+void FrontPanels<Real>::add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u,
+                                              Eigen::Ref<Eigen::VectorXd> y) const {
+  for (int i = 0; i < borders(); ++i) bordering_[plan_->border[i]] = static_cast<Real>(-u[i]);
+  whole_.setZero();
+  for (const Front& front : plan_->fronts) {
+    const Real* border = panels_.data() + front.panel + front.rows();
+    kernels_->multiply_transposed(border, front.stride, front.borders, front.columns, bordering_.data() + front.border,
+                                  whole_.data() + front.first);
+  }
+  y += signs_.cwiseProduct(whole_).template cast<double>();
+}
+
+template class FrontPanels<float>;
+template class FrontPanels<double>;
+
+}  // namespace sinew::linalg

@@ -1,0 +1,65 @@
+// The numbers of a factorisation by fronts, in double or in single precision.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "sinew/linalg/fronts.hpp"
+#include "sinew/linalg/kernels.hpp"
+#include "sinew/threads/crew.hpp"
+
+namespace sinew::linalg {
+
+/// What SparseFactor does with each kind of number (float, double); all that is given and taken is double.
+template <class Real>
+class FrontPanels {
+ public:
+  /// Strides of a plan for double precision are too short for floats; throws std::invalid_argument.
+  FrontPanels(std::shared_ptr<const Fronts> plan, const KernelsOf<Real>& kernels);
+
+  /// `values`, `border_values`: as Fronts places them. False where a pivot is zero or not finite.
+  bool factor(const std::vector<double>& values, const std::vector<double>& border_values, threads::Crew& crew);
+  static double rounding() { return static_cast<double>(std::numeric_limits<Real>::epsilon()); }
+  /// Its size.
+  double smallest_pivot() const { return static_cast<double>(pivots_.cwiseAbs().minCoeff()); }
+  int negative() const { return static_cast<int>((pivots_.array() < Real(0)).count()); }
+  const Eigen::VectorXd& diagonal() const { return diagonal_; }  ///< of A, its size, in the order of elimination
+  Eigen::VectorXd signs() const { return signs_.template cast<double>(); }
+
+  void half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const;
+  void back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const;
+  void compliance(Eigen::MatrixXd& W) const;
+  void border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const;
+  void add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::Ref<Eigen::VectorXd> y) const;
+
+ private:
+  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+  using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+  int size() const { return static_cast<int>(plan_->place.size()); }
+  int borders() const { return static_cast<int>(plan_->border.size()); }
+  bool factor_fronts(threads::Crew& crew);
+  void start_panel(const Front& front);
+  bool factor_front(const Front& front, Real* room, threads::Crew& crew);
+  Real* update_of(const Front& front, Real* room) { return (front.in_part ? room : updates_.data()) + front.update; }
+  void add_children(const Front& front, Real* room, bool to_panel, threads::Crew& crew);
+  void update(threads::Crew& crew, Real* C, int C_stride, const Real* A, int A_stride, int height, int columns,
+              int depth, const Real* signs, bool fresh);
+
+  std::shared_ptr<const Fronts> plan_;
+  const KernelsOf<Real>* kernels_;
+  const double *values_ = nullptr, *border_values_ = nullptr;  ///< while it factors
+  std::vector<Real> panels_, updates_;
+  std::vector<std::vector<Real>> rooms_;  ///< of parts that are done at one time
+  Eigen::VectorXd diagonal_;
+  Vector pivots_, signs_;
+  Matrix minus_W_;                                  ///< -H A^-1 H^T below its diagonal, in the order of the plan
+  mutable Vector own_, below_, whole_, bordering_;  ///< room for solves: one thread at a time
+};
+
+extern template class FrontPanels<float>;
+extern template class FrontPanels<double>;
+
+}  // namespace sinew::linalg
