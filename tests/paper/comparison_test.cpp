@@ -34,7 +34,7 @@ const Reference kPrototype[] = {{5 * mm, {79.63, 14.21, 0.54}, 20.6}, {10 * mm, 
 /// The same with the geometric cable (another program: frames from edges, one linearised step).
 const Reference kGeometric[] = {{5 * mm, {79.11, 16.26, 0.25}, 22.7}, {10 * mm, {65.81, 33.66, -0.41}, 43.8}};
 
-TEST(Comparison, tip_is_within_two_percent_of_its_travel_of_the_prototype_lengthy) {
+TEST(Comparison, tip_is_within_two_percent_of_its_travel_of_the_prototype) {
   for (const Reference& reference : kPrototype) {
     Model model;
     const Trace trace = simulate(comparison_finger(kFinger, reference.pull), &model);
@@ -67,7 +67,7 @@ Table smooth_pull(double pull, double seconds) {
   return table;
 }
 
-TEST(Comparison, force_grows_with_the_pull_and_the_tip_moves_smoothly_lengthy) {
+TEST(Comparison, force_grows_with_the_pull_and_the_tip_moves_smoothly) {
   double force = 0.0;
   for (double pull : {5 * mm, 10 * mm, 15 * mm, 20 * mm}) {
     Model model;
@@ -95,7 +95,7 @@ TEST(Comparison, force_grows_with_the_pull_and_the_tip_moves_smoothly_lengthy) {
   }
 }
 
-TEST(Comparison, force_at_rest_does_not_depend_on_the_time_step_lengthy) {
+TEST(Comparison, force_at_rest_does_not_depend_on_the_time_step) {
   std::vector<double> forces;
   for (double h : {0.02, 0.01, 0.005}) {
     Scene scene = comparison_finger(kFinger, 20 * mm);

@@ -42,7 +42,7 @@ Taut pulled(const Scene& scene) {
 
 class TautCable : public testing::TestWithParam<double> {};
 
-TEST_P(TautCable, NewtonConverges_lengthy) {
+TEST_P(TautCable, NewtonConverges) {
   const double wanted = GetParam(), tension = pulled(taut_finger(1e-3)).tension;
   double EI = tension * kSpan * kSpan / wanted;
   Taut converged = pulled(taut_finger(EI));
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(TensionOverBending, TautCable, testing::Values(1.0, 40.
 /// 450 kPa cannot carry that (one cable curls it up at 2 N, four buckle it below 1 N each), so the body is stiffer.
 class TautTrunk : public testing::TestWithParam<std::pair<double, double>> {};
 
-TEST_P(TautTrunk, SingleStepsFollowTheConvergedOnes_lengthy) {
+TEST_P(TautTrunk, SingleStepsFollowTheConvergedOnes) {
   const auto [young, others] = GetParam();
   const auto at_10_newton = [&, modulus = young, rest = others](int iterations) {
     Scene scene = trunk(SINEW_SHARED_MESHES, 10);
