@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <stdexcept>
 #include <thread>
 
 #include "sinew/commands.hpp"
@@ -140,7 +141,8 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
 }
 
 /// The scene of a recording, as it was when it was recorded.
-LoadedScene load_recorded(const io::RecordingHeader& header, const std::filesystem::path& path) {
+LoadedScene load_recorded(const io::Recording& recording, const std::filesystem::path& path) {
+  const io::RecordingHeader& header = recording.header;
   if (header.state_layout != kStateLayout)
     throw InputError({path.string(), 0, "", "", "holds states of another version of the engine",
                       "run the scene again, or use the version of Sinew that recorded it, " + header.program_version});
@@ -148,16 +150,19 @@ LoadedScene load_recorded(const io::RecordingHeader& header, const std::filesyst
   if (loaded.inputs_hash != header.inputs_hash)
     throw InputError({path.string(), 0, "", "", "the scene's mesh files are not the ones this run was made with",
                       "restore them in " + header.scene_folder + ", or start a new run"});
-  if (header.state_size != pack(initial_state(loaded.model)).size())
+  try {
+    for (const io::RecordedStep& step : recording.steps) unpack(loaded.model, step.state);
+  } catch (const std::invalid_argument&) {
     throw InputError({path.string(), 0, "", "", "holds states of another model of its scene",
                       "run the scene again, or use the version of Sinew that recorded it, " + header.program_version});
+  }
   return loaded;
 }
 
 int resume(const RunOptions& options) {
   const std::filesystem::path path = recording_path(options.resume);
   const io::Recording recording = io::read_recording(path);
-  const LoadedScene loaded = load_recorded(recording.header, path);
+  const LoadedScene loaded = load_recorded(recording, path);
   if (recording.steps.empty())
     throw InputError({path.string(), 0, "", "", "holds no finished step", "start the run again"});
   const State state = unpack(loaded.model, recording.steps.back().state);
@@ -196,7 +201,6 @@ int run_scene(const RunOptions& options) {
   header.scene_folder = std::filesystem::absolute(loaded.model.scene.folder).lexically_normal().string();
   header.inputs_hash = loaded.inputs_hash;
   header.state_layout = kStateLayout;
-  header.state_size = pack(start).size();
   header.signal_names = signal_names(loaded.model);
   io::RecordingWriter writer = io::RecordingWriter::create(path, header);
   writer.append(recorded(loaded.model, start, StepReport{}));
@@ -205,7 +209,7 @@ int run_scene(const RunOptions& options) {
 
 int export_run(const std::filesystem::path& folder) {
   const io::Recording recording = io::read_recording(recording_path(folder));
-  const LoadedScene loaded = load_recorded(recording.header, recording_path(folder));
+  const LoadedScene loaded = load_recorded(recording, recording_path(folder));
   RunSummary summary;
   const bool whole =
       !recording.steps.empty() && recording.steps.back().time >= run_duration(loaded.model.scene) * (1.0 - 1e-9);

@@ -130,7 +130,7 @@ const std::vector<Broken> cases = {
     {"point: [100 mm, 5 mm, 7 mm], ", "", 54, "outputs.tip.solid", "", "is given without `point`", "add `point`"},
     // Structure.
     {"couplings:\n  - slide: {rod: cable, solid: finger, points: 15, anchor_tip: position, reach: 2 mm}\n"
-     "  - slide: {rod: thread, solid: block, points: [0, 30 mm], anchor_tip: none}\n",
+     "  - slide: {rod: thread, solid: block, points: [0, 30 mm], anchor_tip: none, friction: 0.1}\n",
      "couplings: 3\n", 45, "couplings", "3", "must be a list of couplings", "slide"},
     {"view: {interval: 20 ms}", "view: 20 ms", 6, "view", "20 ms", "must be a map with the keys interval", "interval"},
     {"gravity: [0, -9.81, 0]", "gravity: &g [0, -9.81, 0]", 4, "", "&g", "anchors and aliases", "write the value out"},

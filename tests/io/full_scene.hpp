@@ -49,7 +49,7 @@ rods:
     sections: [0, 4 cm, 10 cm]
 couplings:
   - slide: {rod: cable, solid: finger, points: 15, anchor_tip: position, reach: 2 mm}
-  - slide: {rod: thread, solid: block, points: [0, 30 mm], anchor_tip: none}
+  - slide: {rod: thread, solid: block, points: [0, 30 mm], anchor_tip: none, friction: 0.1}
 actuators:
   pull: {rod: cable, motion: translation, displacement: {times: [0, 1], values: [0, 20 mm]}}
   twist: {rod: cable, angle: 90 deg}
@@ -166,6 +166,32 @@ actuators:
   push: {rod: cable, force: {times: [0, 1], values: [0, 1]}}
   turn: {rod: cable, torque: {times: [0, 1], values: [0, 1]}}
   bend: {rod: cable, angle: {times: [0, 1], values: [0, 1]}}
+)";
+
+inline constexpr const char* bodies_scene = R"(# Rigid bodies, obstacles and their contact.
+frames:
+  hand: {motion: {times: [0, 1], translate: [[0, 0, 0], [0, 0, 50 mm]]}}
+bodies:
+  cube: {box: {size: [20 mm, 30 mm, 40 mm]}, pose: {rotate: [0, 0, 45 deg], translate: [0, 0, 10 mm]}, mass: 30 g}
+  ball: {sphere: {radius: 10 mm}, density: 1200, velocity: [0, 0, -1 m/s], spin: [0, 180 deg/s, 0]}
+  drum: {cylinder: {radius: 10 mm, length: 50 mm}, mass: 1 kg}
+  pill: {capsule: {radius: 5 mm, length: 30 mm}, mass: 1 kg}
+obstacles:
+  floor: {plane: {point: [0, 0, -1 mm], normal: [0, 0, 2]}}
+  step: {box: {size: [1, 1, 1]}, pose: {rotate: [0, 0, 90 deg], translate: [1, 0, 0]}, frame: hand}
+  knob: {sphere: {radius: 10 mm}}
+  post: {cylinder: {radius: 10 mm, length: 50 mm}}
+  rail: {capsule: {radius: 5 mm, length: 30 mm}}
+contact:
+  friction: 0.4
+  restitution: 0.1
+  pairs:
+    - {between: [cube, floor], friction: 0.08, restitution: 0.3}
+    - {between: [ball, drum], off: true}
+outputs:
+  where: {body: cube}
+  weight: {body: cube, quantity: force}
+  press: {between: [cube, floor]}
 )";
 
 inline constexpr const char* solids_scene = R"(# Solids of every law, held and loaded by every kind of region.

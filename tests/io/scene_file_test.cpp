@@ -117,6 +117,52 @@ TEST(SceneFile, ReadsRodsAndCouplings) {
   EXPECT_EQ(std::get<std::vector<double>>(second.points), (std::vector<double>{0, 0.03}));
   EXPECT_EQ(second.anchor_tip, AnchorTip::none);
   EXPECT_FALSE(second.reach);
+  EXPECT_EQ(first.friction, 0.0);
+  EXPECT_EQ(second.friction, 0.1);
+}
+
+TEST(SceneFile, ReadsBodiesAndContact) {
+  const Scene scene = parse(bodies_scene).scene;
+  ASSERT_EQ(scene.bodies.size(), 4u);
+  const auto& [name, cube] = scene.bodies[0];
+  EXPECT_EQ(name, "cube");
+  EXPECT_EQ(std::get<BoxShape>(cube.shape).size, Vec3(0.02, 0.03, 0.04));
+  EXPECT_EQ(cube.pose.translate, Vec3(0, 0, 0.01));
+  EXPECT_EQ(cube.mass, 0.03);
+  EXPECT_FALSE(cube.density);
+  EXPECT_EQ(cube.velocity, Vec3(0, 0, 0));
+  const RigidBody& ball = scene.bodies[1].second;
+  EXPECT_EQ(std::get<SphereShape>(ball.shape).radius, 0.01);
+  EXPECT_EQ(ball.density, 1200.0);
+  EXPECT_EQ(ball.velocity, Vec3(0, 0, -1));
+  EXPECT_NEAR(ball.spin.y(), std::numbers::pi, 1e-15);
+  EXPECT_EQ(std::get<CylinderShape>(scene.bodies[2].second.shape).length, 0.05);
+  EXPECT_EQ(std::get<CapsuleShape>(scene.bodies[3].second.shape).radius, 0.005);
+
+  ASSERT_EQ(scene.obstacles.size(), 5u);
+  const PlaneShape& floor = std::get<PlaneShape>(scene.obstacles[0].second.shape);
+  EXPECT_EQ(floor.point, Vec3(0, 0, -0.001));
+  EXPECT_EQ(floor.normal, Vec3(0, 0, 2));
+  EXPECT_FALSE(scene.obstacles[0].second.frame);
+  const Obstacle& step = scene.obstacles[1].second;
+  EXPECT_EQ(std::get<BoxShape>(step.shape).size, Vec3(1, 1, 1));
+  EXPECT_EQ(step.frame, "hand");
+  EXPECT_EQ(step.pose.translate, Vec3(1, 0, 0));
+
+  EXPECT_EQ(scene.contact.friction, 0.4);
+  EXPECT_EQ(scene.contact.restitution, 0.1);
+  ASSERT_EQ(scene.contact.pairs.size(), 2u);
+  EXPECT_EQ(scene.contact.pairs[0].first, "cube");
+  EXPECT_EQ(scene.contact.pairs[0].second, "floor");
+  EXPECT_EQ(scene.contact.pairs[0].friction, 0.08);
+  EXPECT_EQ(scene.contact.pairs[0].restitution, 0.3);
+  EXPECT_FALSE(scene.contact.pairs[0].off);
+  EXPECT_TRUE(scene.contact.pairs[1].off);
+  EXPECT_FALSE(scene.contact.pairs[1].friction);
+  ASSERT_EQ(scene.outputs.size(), 3u);
+  EXPECT_EQ(scene.outputs[1].second.body, "cube");
+  EXPECT_EQ(scene.outputs[1].second.quantity, Quantity::force);
+  EXPECT_EQ(scene.outputs[2].second.between, (std::vector<std::string>{"cube", "floor"}));
 }
 
 TEST(SceneFile, ReadsActuatorsAndOutputs) {

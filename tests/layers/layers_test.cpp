@@ -34,8 +34,10 @@ const Layers kMayInclude = {
     {"rod", {"lie", "linalg"}},
     {"solid", {"lie", "linalg"}},
     {"constraint", {"lie", "rod", "solid", "linalg"}},
+    {"contact", {}},
+    {"rigid", {"lie"}},
     {"solve", {"linalg"}},
-    {"sim", {"error", "lie", "linalg", "rod", "solid", "constraint", "solve", "threads"}},
+    {"sim", {"error", "lie", "linalg", "rod", "solid", "rigid", "contact", "constraint", "solve", "threads"}},
     {"io", {"error", "solid", "sim"}},
 };
 

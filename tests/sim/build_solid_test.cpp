@@ -333,7 +333,7 @@ TEST(Springs, are_in_the_tangent) {
     State moved = state;
     moved.solids[0].x = x.reshaped(3, solid.body.nodes());
     SolidForces forces;
-    solid_forces(context, moved, 0, forces);
+    solid_forces(context, moved, {}, 0, forces);
     return forces.r;
   };
   const Eigen::MatrixXd D = difference(force, state.solids[0].x.reshaped(), 1e-6);

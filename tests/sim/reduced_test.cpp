@@ -14,7 +14,7 @@ namespace {
 
 solve::CoupledProblem linearized(const StepContext& context, const State& iterate) {
   Reduced reduced;
-  linearize(context, iterate, reduced);
+  linearize(context, iterate, {}, reduced);
   return std::move(reduced.problem);
 }
 

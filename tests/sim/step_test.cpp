@@ -32,7 +32,7 @@ TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
 
 /// Where this has to change, kStateLayout has to be raised.
 TEST(State, is_packed_in_the_order_that_its_layout_names) {
-  ASSERT_EQ(kStateLayout, 3u);
+  ASSERT_EQ(kStateLayout, 4u);
   double next = 0.0;
   const auto number = [&next] { return next += 1.0; };
   const auto fill = [&](auto& array, int rows, int columns) {
@@ -41,7 +41,8 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   };
   State state;
   state.grid = static_cast<long>(number());
-  state.points.push_back({0.0, true});
+  number();  // contacts
+  state.points.push_back({0.0, 0.0, true});
   number();  // on
   state.path.stable = true;
   number();
@@ -57,7 +58,14 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   fill(rod.velocity, 3, 1);
   fill(rod.internal, 2, 2);
   fill(state.cables.emplace_back().z, 2, 1);
+  rigid::Motion& body = state.bodies.emplace_back();
+  for (double& value : body.p) value = number();
+  for (double& value : body.R.reshaped()) value = number();
+  for (Vec3* three : {&body.v, &body.w}) {
+    for (double& value : *three) value = number();
+  }
   state.points[0].s = number();
+  state.points[0].friction = number();
   fill(state.followed, 2, 1);
   fill(state.lambda, 2, 1);
   state.actuators = {number()};
@@ -68,9 +76,17 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   state.path.farthest = number();
   fill(state.path.direction, 2, 1);
   state.frequency = number();
+  ContactState& contact = state.contacts.emplace_back();
+  contact.pair = static_cast<int>(number());
+  contact.part = static_cast<std::uint64_t>(number());
+  for (Vec3* three : {&contact.force, &contact.point, &contact.normal}) {
+    for (double& value : *three) value = number();
+  }
+  contact.gap = number();
+  contact.slip = number();
   std::vector<double> expected(static_cast<std::size_t>(next));
   std::iota(expected.begin(), expected.end(), 1.0);
-  expected[1] = expected[2] = 1.0;  // on, stable
+  expected[1] = expected[2] = expected[3] = 1.0;  // contacts, on, stable
   EXPECT_EQ(pack(state), expected);
 }
 

@@ -114,17 +114,23 @@ Type<bool> boolean() {
 
 Type<std::string> name_of(std::string what) {
   const Type<std::string> any = text();
+  std::string all = what;
+  if (all.ends_with('y')) {
+    all.pop_back();
+    all += "ie";
+  }
+  all += 's';
   const auto read = [=](const At& at) {
     std::string name = any.read(at);
-    const std::vector<std::string> known = at.names_in(what + "s");
+    const std::vector<std::string> known = at.names_in(all);
     if (std::find(known.begin(), known.end(), name) != known.end()) return name;
     constexpr std::size_t shown = 12;
     const std::vector<std::string> first(known.begin(), known.begin() + std::min(known.size(), shown));
     const std::string near = nearest(name, known);
     at.refuse(fmt::format("is not a {} of this scene", what),
               (near.empty() ? "" : fmt::format("did you mean `{}`? ", near)) +
-                  (known.empty() ? fmt::format("the scene has no {}s; describe it under `{}s:`", what, what)
-                                 : fmt::format("the {}s are {}{}", what, fmt::join(first, ", "),
+                  (known.empty() ? fmt::format("the scene has no {}; describe it under `{}:`", all, all)
+                                 : fmt::format("the {} are {}{}", all, fmt::join(first, ", "),
                                                known.size() > shown ? ", ..." : "")));
   };
   return {read, any.schema};

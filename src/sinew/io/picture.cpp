@@ -17,8 +17,9 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 
-constexpr Area kScene{80, 155, 1340, 825};     ///< robots are fitted into this
-constexpr Area kLabels{40, 118, 1380, 862};    ///< names stay in this
+constexpr Area kScene{80, 155, 1340, 825};   ///< robots are fitted into this
+constexpr Area kLabels{40, 118, 1380, 862};  ///< names stay in this
+constexpr Rgb kForce = rgb(0x1446a0);
 constexpr Area kLegend{1436, 230, 1464, 760};  ///< the bar
 
 template <class Object>
@@ -60,6 +61,26 @@ void draw_sliding_points(const Page& page, const std::vector<MarkSnapshot>& mark
   }
   const double radius = std::clamp(0.3 * gap, 2.0, 4.5);
   for (const Vec2& place : places) page.disc(place, radius, kWhite, std::min(1.6, 0.5 * radius), kInk);
+}
+
+/// Forces as arrows on what they push, the largest as long as a tenth of the page.
+void draw_contacts(const Page& page, const std::vector<ForceSnapshot>& contacts, const PictureView& view) {
+  constexpr double kLongest = 90.0;  // [px]
+  double largest = 0.0;
+  for (const ForceSnapshot& own : contacts) largest = std::max(largest, own.force.norm());
+  if (!(largest > 0.0)) return;
+  for (const ForceSnapshot& own : contacts) {
+    if (!drawable(own.position)) continue;
+    const Vec2 from = view.project(own.position).head<2>();
+    const Vec3 end = own.position + own.force * (kLongest / (view.scale * largest));
+    const Vec2 to = view.project(end).head<2>(), along = to - from;
+    if (along.norm() < 2.0) continue;
+    const Vec2 way = along.normalized(), across(-way.y(), way.x());
+    const double head = std::min(9.0, 0.5 * along.norm());
+    page.line(from, to, 2.2, kForce);
+    page.line(to, to - head * way + 0.5 * head * across, 2.2, kForce);
+    page.line(to, to - head * way - 0.5 * head * across, 2.2, kForce);
+  }
 }
 
 void draw_output_sign(const Page& page, const Vec2& place) {
@@ -153,6 +174,8 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool 
     entry(rest.outputs.empty() ? "output" : "output and its travel", 24, [&](double x) {
       draw_output_sign(page, {x + 8, kBase - 6});
     });
+  if (!end.contacts.empty())
+    entry("contact force", 38, [&](double x) { page.line({x, kBase - 6}, {x + 30, kBase - 6}, 2.2, kForce); });
   if (!end.sliding_points.empty())
     entry("sliding point", 18, [&](double x) { page.disc({x + 5, kBase - 6}, 4.5, kWhite, 1.6, kInk); });
   if (!end.rods.empty() && rods_orange)
@@ -195,6 +218,10 @@ std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end) {
         const double radius = i < rod.radius.size() ? rod.radius(i) : 0.0;
         sights.push_back({rod.points.col(i), radius > 0.0 && radius < 1e30 ? radius : 0.0});
       }
+    }
+    for (const BodySnapshot& body : snapshot->bodies) {
+      if (body.ground) continue;
+      for (const auto& point : body.points.colwise()) sights.push_back({point, 0.0});
     }
     for (const auto* marks : {&snapshot->outputs, &snapshot->sliding_points})
       for (const MarkSnapshot& mark : *marks) sights.push_back({mark.position, 0.0});
@@ -260,11 +287,15 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
     const double edge = edge_strength(end.solids, view);
     for (std::size_t i = 0; i < end.solids.size(); ++i)
       add_surface(bodies, end.solids[i].nodes, end.solids[i], on_solids[i], scale, view, edge);
+    Raster ground(area, plain_palette(kGrey));
+    for (const BodySnapshot& body : end.bodies) add_body(body.ground ? ground : bodies, body, view);
+    ground.paint(page.cairo(), {.fill = 0.2, .line = 0.4, .width = 1.0, .line_color = kGrey});
     for (std::size_t i = 0; i < end.rods.size(); ++i) add_tube(rods, end.rods[i], on_rods[i], scale, view);
     rods.paint(page.cairo(), {.width = 0.0});
     bodies.paint(page.cairo(), {.fill = 0.78, .line = 0.9, .width = 1.2});
     rods.paint(page.cairo(), {.width = 0.0, .before = &bodies, .hidden = 0.45});
     draw_sliding_points(page, end.sliding_points, view);
+    draw_contacts(page, end.contacts, view);
     draw_outputs(page, rest, end, view);
     draw_triad(page, view, {120, 905});
     draw_scale_bar(page, view, 230, 940);

@@ -55,6 +55,27 @@ double light(const Vec3& normal) {
   return 0.52 + 0.54 * std::max(0.0, (normal.z() < 0.0 ? -1.0 : 1.0) * normal.dot(from));
 }
 
+/// `value` of each corner, counted over all triangles; `rim` of the edge between two nodes.
+template <class Value, class Rim>
+void add_triangles(Raster& raster, const Eigen::Matrix3Xd& nodes, const std::vector<solid::Triangle>& surface,
+                   const PictureView& view, const Value& value, const Rim& rim) {
+  for (std::size_t s = 0; s < surface.size(); ++s) {
+    const solid::Triangle& face = surface[s];
+    if (!drawable(nodes, face[0]) || !drawable(nodes, face[1]) || !drawable(nodes, face[2])) continue;
+    std::array<Corner, 3> corners;
+    for (int i = 0; i < 3; ++i) {
+      corners[i].place = view.project(nodes.col(face[i]));
+      corners[i].value = value(3 * s + static_cast<std::size_t>(i));
+    }
+    const Vec3 normal = (corners[1].place - corners[0].place).cross(corners[2].place - corners[0].place);
+    if (!(normal.norm() > 0.0)) continue;
+    for (Corner& corner : corners) corner.light = light(normal.normalized());
+    std::array<double, 3> rims{};
+    for (int i = 0; i < 3; ++i) rims[i] = rim(face[(i + 1) % 3], face[(i + 2) % 3]);
+    raster.add(corners, rims);
+  }
+}
+
 }  // namespace
 
 bool drawable(const Eigen::Matrix3Xd& points, int i) { return i >= 0 && i < points.cols() && drawable(points.col(i)); }
@@ -105,24 +126,15 @@ Scale scale_of(std::vector<double> values, PictureColor color) {
 void add_surface(Raster& raster, const Eigen::Matrix3Xd& nodes, const SolidSnapshot& solid,
                  const std::vector<double>& values, const Scale& scale, const PictureView& view, double edge) {
   const std::vector<Edge> cuts = edge > 0.0 ? cuts_through_faces(solid.cells) : std::vector<Edge>();
-  for (std::size_t s = 0; s < solid.surface.size(); ++s) {
-    const solid::Triangle& face = solid.surface[s];
-    if (!drawable(nodes, face[0]) || !drawable(nodes, face[1]) || !drawable(nodes, face[2])) continue;
-    std::array<Corner, 3> corners;
-    for (int i = 0; i < 3; ++i) {
-      corners[i].place = view.project(nodes.col(face[i]));
-      if (!values.empty()) corners[i].value = scale.of(values[3 * s + static_cast<std::size_t>(i)]);
-    }
-    const Vec3 normal = (corners[1].place - corners[0].place).cross(corners[2].place - corners[0].place);
-    if (!(normal.norm() > 0.0)) continue;
-    for (Corner& corner : corners) corner.light = light(normal.normalized());
-    std::array<double, 3> rim{};
-    for (int i = 0; i < 3; ++i) {
-      const bool cut = std::binary_search(cuts.begin(), cuts.end(), edge_between(face[(i + 1) % 3], face[(i + 2) % 3]));
-      rim[i] = cut ? 0.0 : edge;
-    }
-    raster.add(corners, rim);
-  }
+  add_triangles(
+      raster, nodes, solid.surface, view,
+      [&](std::size_t corner) { return values.empty() ? 0.0 : scale.of(values[corner]); },
+      [&](int a, int b) { return std::binary_search(cuts.begin(), cuts.end(), edge_between(a, b)) ? 0.0 : edge; });
+}
+
+void add_body(Raster& raster, const BodySnapshot& body, const PictureView& view) {
+  add_triangles(
+      raster, body.points, body.surface, view, [](std::size_t) { return NAN; }, [](int, int) { return 0.0; });
 }
 
 double edge_strength(const std::vector<SolidSnapshot>& solids, const PictureView& view) {

@@ -35,6 +35,9 @@ Scale scale_of(std::vector<double> values, PictureColor color);
 void add_surface(Raster& raster, const Eigen::Matrix3Xd& nodes, const SolidSnapshot& solid,
                  const std::vector<double>& values, const Scale& scale, const PictureView& view, double edge);
 
+/// Adds a rigid body or an obstacle, in the colour of what has no value.
+void add_body(Raster& raster, const BodySnapshot& body, const PictureView& view);
+
 /// How dark mesh edges are: fading where they would be closer than a person can tell apart.
 double edge_strength(const std::vector<SolidSnapshot>& solids, const PictureView& view);
 

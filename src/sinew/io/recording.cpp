@@ -128,7 +128,6 @@ std::string encode(const RecordingHeader& header) {
        {&header.program_version, &header.scene_text, &header.scene_name, &header.scene_folder, &header.inputs_hash})
     out.string(*text);
   out.u64(header.state_layout);
-  out.u64(header.state_size);
   out.u64(header.signal_names.size());
   for (const std::string& name : header.signal_names) out.string(name);
   return out.bytes();
@@ -142,6 +141,7 @@ std::string encode(const RecordedStep& step) {
   out.f64(step.residual);
   out.f64(step.violation);
   out.doubles(step.signals);
+  out.u64(step.state.size());
   out.doubles(step.state);
   return out.bytes();
 }
@@ -153,7 +153,6 @@ std::optional<RecordingHeader> decode_header(std::string_view payload) {
        {&header.program_version, &header.scene_text, &header.scene_name, &header.scene_folder, &header.inputs_hash})
     *text = in.string();
   header.state_layout = in.u64();
-  header.state_size = in.u64();
   header.signal_names = in.strings(in.u64());
   if (!in.whole()) return std::nullopt;
   return header;
@@ -168,7 +167,7 @@ std::optional<RecordedStep> decode_step(std::string_view payload, const Recordin
   step.residual = in.f64();
   step.violation = in.f64();
   step.signals = in.doubles(header.signal_names.size());
-  step.state = in.doubles(header.state_size);
+  step.state = in.doubles(in.u64());
   if (!in.whole()) return std::nullopt;
   return step;
 }
@@ -264,21 +263,20 @@ RecordingWriter RecordingWriter::create(const std::filesystem::path& path, const
   start.u32(0);
   AppendFile file(path, AppendFile::Start::empty);
   file.append(std::string(kMagic) + start.bytes() + framed(encode(header), 0));
-  return {std::move(file), header.state_size, header.signal_names.size(), 1};
+  return {std::move(file), header.signal_names.size(), 1};
 }
 
 RecordingWriter RecordingWriter::append_to(const std::filesystem::path& path) {
   AppendFile file(path, AppendFile::Start::keep);  // (first, so that no other run writes while we read)
   const Recording recording = read_recording(path);
   if (recording.torn) file.truncate(recording.valid_bytes);
-  return {std::move(file), recording.header.state_size, recording.header.signal_names.size(),
-          recording.steps.size() + 1};
+  return {std::move(file), recording.header.signal_names.size(), recording.steps.size() + 1};
 }
 
 void RecordingWriter::append(const RecordedStep& step) {
-  if (step.signals.size() != signals_ || step.state.size() != state_size_)
-    throw std::invalid_argument(fmt::format("recorded step has {} signals and {} state entries, its header {} and {}",
-                                            step.signals.size(), step.state.size(), signals_, state_size_));
+  if (step.signals.size() != signals_)
+    throw std::invalid_argument(
+        fmt::format("recorded step has {} signals, its header {}", step.signals.size(), signals_));
   file_.append(framed(encode(step), records_));
   ++records_;
 }

@@ -4,7 +4,7 @@
 // Bytes (all numbers little-endian; f64 is IEEE 754 binary64, its bits as they are):
 //
 //   file    magic     8 bytes  89 53 49 4e 45 57 0d 0a ("\x89SINEW\r\n": a text conversion destroys it)
-//           version   u32      3
+//           version   u32      4
 //           reserved  u32      0
 //           record 0           the header
 //           record 1, 2, ...   the steps, in order
@@ -14,8 +14,9 @@
 //           payload
 //
 //   header  string program_version, scene_text, scene_name, scene_folder, inputs_hash
-//           u64 state_layout, u64 state_size, u64 number of signals, string each signal's name
-//   step    f64 time, string status, u32 newton, f64 residual, f64 violation, f64 each signal, f64 each state entry
+//           u64 state_layout, u64 number of signals, string each signal's name
+//   step    f64 time, string status, u32 newton, f64 residual, f64 violation, f64 each signal,
+//           u64 number of state entries, f64 each
 //   string  u64 bytes, then the bytes
 //
 // Nothing in it depends on the clock or the machine, so equal runs give equal files. A program of another `version`
@@ -32,7 +33,7 @@
 
 namespace sinew::io {
 
-inline constexpr std::uint32_t kRecordingVersion = 3;
+inline constexpr std::uint32_t kRecordingVersion = 4;
 
 /// What was run. `inputs_hash` is the content hash of everything the scene reads (io/content_hash).
 struct RecordingHeader {
@@ -42,7 +43,6 @@ struct RecordingHeader {
   std::string scene_folder;
   std::string inputs_hash;
   std::uint64_t state_layout = 0;         ///< which numbers of a state, in which order (sim/state)
-  std::uint64_t state_size = 0;           ///< how many
   std::vector<std::string> signal_names;  ///< columns of signals.csv after time, status, newton
 
   bool operator==(const RecordingHeader&) const = default;
@@ -56,7 +56,7 @@ struct RecordedStep {
   double residual = 0.0;        ///< [-] relative, as the step's report has it
   double violation = 0.0;       ///< [m] largest of the constraints
   std::vector<double> signals;  ///< one per name of the header
-  std::vector<double> state;    ///< state_size values
+  std::vector<double> state;    ///< as many as it has: contacts come and go
 };
 
 struct Recording {
@@ -83,17 +83,16 @@ class RecordingWriter {
   /// Goes on after the last whole step; what is torn or damaged behind it is dropped. InputError as `read_recording`.
   static RecordingWriter append_to(const std::filesystem::path& path);
 
-  /// Sizes must be those of the header (std::invalid_argument otherwise).
+  /// There must be as many signals as the header names (std::invalid_argument otherwise).
   void append(const RecordedStep& step);
 
   std::uint64_t steps() const { return records_ - 1; }  ///< in the file so far
 
  private:
-  RecordingWriter(AppendFile file, std::uint64_t state_size, std::size_t signals, std::uint64_t records)
-      : file_(std::move(file)), state_size_(state_size), signals_(signals), records_(records) {}
+  RecordingWriter(AppendFile file, std::size_t signals, std::uint64_t records)
+      : file_(std::move(file)), signals_(signals), records_(records) {}
 
   AppendFile file_;
-  std::uint64_t state_size_;
   std::size_t signals_;
   std::uint64_t records_;  ///< header and steps
 };

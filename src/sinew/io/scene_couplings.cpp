@@ -19,6 +19,9 @@ Type<Slide> slide() {
                      &Slide::channel, points({1, 10000})),
         field<Slide>({"anchor_tip", optional, "what holds the tip: its position, its pose, or none", "position"},
                      &Slide::anchor_tip, word_of<AnchorTip>({"none", "position", "pose"})),
+        field<Slide>(
+            {"friction", optional, "Coulomb's coefficient between the rod and its channel; 0 if left out", "0.1"},
+            &Slide::friction, quantity(Dimension::number, at_least(0.0))),
         field<Slide>({"reach", optional, "how far outside the mesh a point may lie [m]", "2 mm"}, &Slide::reach,
                      quantity(Dimension::length, at_least(0.0)))},
        {at_most_one({"points", "channel"})}});

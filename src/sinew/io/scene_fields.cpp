@@ -72,11 +72,11 @@ Type<View> view() {
 /// There is something to simulate.
 Rule some_body() {
   const auto check = [](const At& at, const std::vector<Key>&) {
-    if (at.names_in("solids").empty() && at.names_in("rods").empty()) {
-      at.refuse("needs at least one solid or rod", "describe one under `solids:` or `rods:`");
+    if (at.names_in("solids").empty() && at.names_in("rods").empty() && at.names_in("bodies").empty()) {
+      at.refuse("needs at least one solid, rod or rigid body", "describe one under `solids:`, `rods:` or `bodies:`");
     }
   };
-  return {check, at_least_one({"solids", "rods"}).schema};
+  return {check, at_least_one({"solids", "rods", "bodies"}).schema};
 }
 
 /// No name under the one key is also one under the other.
@@ -125,6 +125,16 @@ const Type<Scene>& scene_type() {
                       "{cable: {path: [[0, 0, 0], [100 mm, 0, 0]], section: {circle: {radius: 0.5 mm}}, "
                       "material: {young: 5 GPa, poisson: 0.4, density: 1100}}}"},
                      &Scene::rods, named<Rod>("a rod", rod())),
+        field<Scene>(
+            {"bodies", optional, "rigid bodies by name", "{cube: {box: {size: [20 mm, 20 mm, 20 mm]}, mass: 30 g}}"},
+            &Scene::bodies, named<RigidBody>("a rigid body", rigid_body())),
+        field<Scene>({"obstacles", optional, "what stands still or is carried by a frame, by name",
+                      "{floor: {plane: {normal: [0, 0, 1]}}}"},
+                     &Scene::obstacles, named<Obstacle>("an obstacle", obstacle())),
+        field<Scene>({"contact", optional,
+                      "how bodies and obstacles meet each other, solids and rods; friction is 0.5 if left out",
+                      "{friction: 0.3}"},
+                     &Scene::contact, contact()),
         field<Scene>({"couplings", optional, "what ties rods to solids, frames, the ground and each other",
                       "[{slide: {rod: cable, solid: finger, points: 15}}]"},
                      &Scene::couplings, list<Coupling>("couplings", coupling(), {0})),
@@ -138,6 +148,11 @@ const Type<Scene>& scene_type() {
                       "{tip: {solid: finger, point: [100 mm, 0, 0]}}"},
                      &Scene::outputs, named<Output>("an output", output()))},
        {some_body(), names_apart("solids", "rods", "is the name of a solid, and results are named after it"),
+        names_apart("solids", "bodies", "is the name of a solid, and results are named after it"),
+        names_apart("rods", "bodies", "is the name of a rod, and results are named after it"),
+        names_apart("solids", "obstacles", "is the name of a solid, and results are named after it"),
+        names_apart("rods", "obstacles", "is the name of a rod, and results are named after it"),
+        names_apart("bodies", "obstacles", "is the name of a body, and results are named after it"),
         names_apart("actuators", "outputs", "is the name of an actuator, and both name columns of signals.csv")}});
   return type;
 }

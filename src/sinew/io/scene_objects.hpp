@@ -9,6 +9,9 @@ namespace sinew::io {
 Type<Frame> frame();
 Type<Solid> solid();
 Type<Rod> rod();
+Type<RigidBody> rigid_body();
+Type<Obstacle> obstacle();
+Type<Contact> contact();
 Type<Coupling> coupling();
 Type<Actuator> actuator();
 Type<Load> load();

@@ -47,19 +47,26 @@ Type<Output> output() {
                       where, in()),
         field<Output>({"reach", optional, "how far outside the mesh the point may lie [m]", "2 mm"}, &Output::reach,
                       quantity(Dimension::length, at_least(0.0))),
+        field<Output>(
+            {"body", optional, "the rigid body that is recorded: its centre of mass, or the force on it", "cube"},
+            &Output::body, name_of("body")),
+        field<Output>({"between", optional, "two objects, of which is recorded how they touch", "[cube, floor]"},
+                      &Output::between, list<std::string>("two names", text(), {2, 2})),
         field<Output>({"rod", optional, "the rod whose point is recorded", "cable"}, &Output::rod, name_of("rod")),
         field<Output>({"at", optional, "the abscissa of the point on the rod [m]", "100 mm"}, &Output::at,
                       quantity(Dimension::length, at_least(0.0))),
         field<Output>(
             {"quantity", optional,
              "what is recorded there: position, strain or stress; of a solid also displacement, or the reaction of all "
-             "that is held in a region; of a rod also force or moment",
+             "that is held in a region; of a rod also force or moment; of a body position, or the force of all that "
+             "touches it",
              "strain"},
             &Output::quantity,
             word_of<Quantity>({"position", "displacement", "strain", "force", "moment", "stress", "reaction"})),
         region()},
-       {exactly_one({"solid", "rod"}), needs("point", "solid"), needs("in", "solid"), needs("reach", "solid"),
-        needs("region", "solid"), needs("rod", "at"), needs("at", "rod"), point_unless_reaction()}});
+       {exactly_one({"solid", "rod", "body", "between"}), needs("point", "solid"), needs("in", "solid"),
+        needs("reach", "solid"), needs("region", "solid"), needs("rod", "at"), needs("at", "rod"),
+        point_unless_reaction()}});
 }
 
 }  // namespace sinew::io

@@ -69,6 +69,11 @@ constexpr std::array all_units = std::to_array<Unit>({
     {"mN/m", line_load, 1.0, 1e3},
     {"N/m", line_load},
     {"kN/m", line_load, 1e3},
+    {"mm/s", velocity, 1.0, 1e3},
+    {"cm/s", velocity, 1.0, 1e2},
+    {"m/s", velocity},
+    {"deg/s", turning, std::numbers::pi, 180.0},
+    {"rad/s", turning},
 });
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
@@ -154,6 +159,10 @@ std::string_view name(Dimension dimension) {
       return "a line density";
     case line_load:
       return "a line load";
+    case velocity:
+      return "a velocity";
+    case turning:
+      return "an angular velocity";
   }
   return "";
 }
@@ -190,6 +199,10 @@ std::string_view si_unit(Dimension dimension) {
       return "kg/m";
     case line_load:
       return "N/m";
+    case velocity:
+      return "m/s";
+    case turning:
+      return "rad/s";
   }
   return "";
 }

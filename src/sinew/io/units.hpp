@@ -24,13 +24,16 @@ enum class Dimension {
   curvature,
   viscosity,
   line_density,
-  line_load
+  line_load,
+  velocity,
+  turning
 };
 
 inline constexpr std::array all_dimensions = {
-    Dimension::number, Dimension::length,    Dimension::mass,      Dimension::time,         Dimension::angle,
-    Dimension::force,  Dimension::torque,    Dimension::pressure,  Dimension::density,      Dimension::acceleration,
-    Dimension::rate,   Dimension::curvature, Dimension::viscosity, Dimension::line_density, Dimension::line_load};
+    Dimension::number,   Dimension::length,    Dimension::mass,      Dimension::time,         Dimension::angle,
+    Dimension::force,    Dimension::torque,    Dimension::pressure,  Dimension::density,      Dimension::acceleration,
+    Dimension::rate,     Dimension::curvature, Dimension::viscosity, Dimension::line_density, Dimension::line_load,
+    Dimension::velocity, Dimension::turning};
 
 /// "a length"
 std::string_view name(Dimension dimension);

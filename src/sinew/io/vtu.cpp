@@ -144,6 +144,34 @@ std::string vtu_text(const RodSnapshot& rod, double time) {
   return grid(time, rod.points, ends.size(), cells(connectivity, ends, types), data, "");
 }
 
+std::string vtu_text(const BodySnapshot& body, double time) {
+  constexpr std::uint8_t kTriangle = 5;  // cell type of VTK
+  std::vector<std::int64_t> connectivity, ends;
+  for (const solid::Triangle& triangle : body.surface) {
+    connectivity.insert(connectivity.end(), triangle.begin(), triangle.end());
+    ends.push_back(static_cast<std::int64_t>(connectivity.size()));
+  }
+  const std::vector<std::uint8_t> types(ends.size(), kTriangle);
+  return grid(time, body.points, ends.size(), cells(connectivity, ends, types), "", "");
+}
+
+std::string vtu_text(const std::vector<ForceSnapshot>& contacts, double time) {
+  constexpr std::uint8_t kVertex = 1;  // cell type of VTK
+  const auto count = static_cast<Eigen::Index>(contacts.size());
+  Eigen::Matrix3Xd points(3, count), force(3, count), normal(3, count);
+  std::vector<std::int64_t> connectivity, ends;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    points.col(i) = contacts[static_cast<std::size_t>(i)].position;
+    force.col(i) = contacts[static_cast<std::size_t>(i)].force;
+    normal.col(i) = contacts[static_cast<std::size_t>(i)].normal;
+    connectivity.push_back(i);
+    ends.push_back(i + 1);
+  }
+  const std::vector<std::uint8_t> types(ends.size(), kVertex);
+  return grid(time, points, ends.size(), cells(connectivity, ends, types),
+              doubles("force", force) + doubles("normal", normal), "");
+}
+
 SeriesWriter::SeriesWriter(std::filesystem::path folder) : folder_(std::move(folder)), taken_{"run"} {
   create_folder(folder_);
   collection("run");
@@ -155,6 +183,10 @@ void SeriesWriter::add(const Snapshot& snapshot) {
     add_part(part_of(solid.name, "solid"), vtu_text(solid, snapshot.time), snapshot.time);
   for (const RodSnapshot& rod : snapshot.rods)
     add_part(part_of(rod.name, "rod"), vtu_text(rod, snapshot.time), snapshot.time);
+  for (const BodySnapshot& body : snapshot.bodies)
+    add_part(part_of(body.name, "body"), vtu_text(body, snapshot.time), snapshot.time);
+  if (!snapshot.bodies.empty())
+    add_part(part_of("contacts", "contacts"), vtu_text(snapshot.contacts, snapshot.time), snapshot.time);
 }
 
 void SeriesWriter::finish() {

@@ -24,6 +24,12 @@ std::string vtu_text(const SolidSnapshot& solid, double time);
 /// cable) is left out.
 std::string vtu_text(const RodSnapshot& rod, double time);
 
+/// The same of a rigid body or an obstacle: its surface.
+std::string vtu_text(const BodySnapshot& body, double time);
+
+/// Points of contact; point data `force` [N], on what `normal` points to.
+std::string vtu_text(const std::vector<ForceSnapshot>& contacts, double time);
+
 /// Writes a series snapshot by snapshot. Of each solid and rod: <name>_0000.vtu, <name>_0001.vtu, ... and <name>.pvd;
 /// `run.pvd` has them all as named parts. The .pvd files are complete after every `add`, so a run that was stopped, or
 /// still goes on, can be looked at. Where a name is taken (a rod of a solid's name, or "run"), `_rod` or `_solid` is

@@ -35,6 +35,24 @@ void on_solid(Model& model, const Output& output, const std::string& path, Outpu
   }
 }
 
+void of_a_pair(const Model& model, const Output& output, const std::string& path, OutputModel& own) {
+  const std::string where = path + ".between";
+  if (output.between.size() != 2)
+    reject(where, std::to_string(output.between.size()) + " names", "must be two", "name the two that touch");
+  const Collider first = find_collider(model, output.between[0], where),
+                 second = find_collider(model, output.between[1], where);
+  for (std::size_t i = 0; i < model.pairs.size(); ++i) {
+    const PairModel& pair = model.pairs[i];
+    own.turned = pair.a != first;
+    if ((pair.a == first && pair.b == second) || (pair.a == second && pair.b == first)) {
+      own.pair = static_cast<int>(i);
+      return;
+    }
+  }
+  reject(where, output.between[0] + ", " + output.between[1], "do not stop each other",
+         "list the two under `contact: {pairs: ...}`");
+}
+
 }  // namespace
 
 void build_output(Model& model, const std::string& name, const Output& output) {
@@ -42,12 +60,19 @@ void build_output(Model& model, const std::string& name, const Output& output) {
   OutputModel own;
   own.name = name;
   own.quantity = output.quantity;
-  if (output.solid.has_value() == output.rod.has_value()) {
-    reject(path, "", "needs exactly one of solid and rod",
-           "write `{solid: NAME, point: [x, y, z]}` or `{rod: NAME, at: s}`");
+  if (output.solid.has_value() + output.rod.has_value() + output.body.has_value() + !output.between.empty() != 1) {
+    reject(
+        path, "", "needs exactly one of solid, rod, body and between",
+        "write `{solid: NAME, point: [x, y, z]}`, `{rod: NAME, at: s}`, `{body: NAME}` or `{between: [NAME, NAME]}`");
   }
   if (output.solid) {
     on_solid(model, output, path, own);
+  } else if (output.body) {
+    if (output.quantity != Quantity::position && output.quantity != Quantity::force)
+      reject(path + ".quantity", "", "is not known of rigid bodies", "write `position` or `force`");
+    own.body = find(model.scene.bodies, *output.body, path + ".body", "rigid body");
+  } else if (!output.between.empty()) {
+    of_a_pair(model, output, path, own);
   } else {
     if (of_solids(output.quantity))
       reject(path + ".quantity", "", "is known of solids only", "write `position` or `force`, or name a solid");

@@ -201,6 +201,13 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   if (line.cable >= 0 && slide.anchor_tip != AnchorTip::position)
     reject(path + ".anchor_tip", slide.anchor_tip == AnchorTip::none ? "none" : "pose",
            "a geometric cable must be anchored by its position", "write `anchor_tip: position`");
+  require_not_negative(slide.friction, path + ".friction", "0 for none, 0.1 for a coated cable");
+  if (slide.friction > 0.0) {
+    if (line.cable >= 0)
+      reject(path + ".friction", text(slide.friction), "a geometric cable slides without", "use `cable: cosserat`");
+    if (model.scene.analysis != Analysis::dynamic)
+      reject(path + ".friction", text(slide.friction), "friction is a matter of motion", "write `analysis: dynamic`");
+  }
   const Asked asked = slide.channel.empty() ? points_on_rod(model, line, slide, path)
                                             : points_in_channel(model, line, solid, slide, path);
   CouplingFacts facts;
@@ -214,6 +221,7 @@ void build_coupling(Model& model, int number, const Slide& slide) {
     point.solid = solid;
     point.coupling = number;
     point.abscissa = asked.abscissae[i];
+    point.friction = slide.friction;
     point.fixed = slide.anchor_tip != AnchorTip::none && i + 1 == asked.abscissae.size();
     const std::string what = slide.channel.empty() ? "the point at " + text(asked.abscissae[i]) + " m of the rod"
                                                    : "point " + std::to_string(i) + " of the channel";

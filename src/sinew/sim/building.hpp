@@ -32,6 +32,9 @@ int find(const Named<T>& entries, const std::string& name, const std::string& pa
   reject(path, name, "no " + kind + " of this name", known.empty() ? "the scene has no " + kind : "known: " + known);
 }
 
+/// Obstacle, body, solid or rod of this name.
+Collider find_collider(const Model& model, const std::string& name, const std::string& path);
+
 int find_frame(const Scene& scene, const std::optional<std::string>& name, const std::string& path);
 
 /// The frame's placement at t = 0, after the object's own pose.
@@ -60,6 +63,11 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
                        std::vector<std::string>& warnings);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
 GeometricCableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
+
+void build_body(Model& model, const std::string& name, const RigidBody& body);
+void build_obstacle(Model& model, const std::string& name, const Obstacle& obstacle);
+/// Which objects stop each other, once all are there.
+void build_pairs(Model& model);
 
 /// The points of the path of a rod, judged, in the world.
 std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod, const std::string& path);

@@ -25,7 +25,8 @@ bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || 
 
 }  // namespace
 
-void solid_forces(const StepContext& context, const State& iterate, int number, SolidForces& forces) {
+void solid_forces(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, int number,
+                  SolidForces& forces) {
   const solid::Body& body = context.model.solids[number].body;
   solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, forces.nodal);
   forces.scale = forces.nodal.scale;
@@ -50,6 +51,15 @@ void solid_forces(const StepContext& context, const State& iterate, int number, 
     const std::span<const int> nodes = body.cells[row.where.element].nodes();
     for (std::size_t c = 0; c < nodes.size(); ++c)
       r.col(nodes[c]) -= row.where.weights[static_cast<Eigen::Index>(c)] * iterate.lambda.segment<3>(row.row);  // H^T
+  }
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Vec3& force = iterate.contacts[i].force;
+    each_side(iterate.contacts[i], touches[i],
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
+                if (side.on != Collider{Collider::Kind::solid, number}) return;
+                for (int k = 0; k < side.local.corners(); ++k) r.col(side.nodes[k]) -= sign * weights[k] * force;
+                forces.scale = std::max(forces.scale, force.norm());
+              });
   }
   solid::at_unknowns(body, r, forces.r);
   forces.reaction.resize(model.held());
@@ -160,6 +170,45 @@ void FreeMotion::effector_motion(const SolidModel& model, const Model& whole, co
       motion[3 * model.effectors[k] + i] = (pushed ? free_[own] : 0.0) + compliance_.row(own).dot(rows_);
     }
   }
+}
+
+void FreeMotion::set_contact_rows(const linalg::SparseFactor::Rows& rows) {
+  contacts_.resize(rows.cols(), rows.rows());
+  coupled_.resize(factor_->borders(), rows.rows());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    x_ = rows.row(i).transpose();
+    factor_->half_solve(x_, contacts_.col(i));
+    factor_->border_times(contacts_.col(i), coupled_.col(i));
+  }
+}
+
+Eigen::MatrixXd FreeMotion::contact_compliance() const {
+  return contacts_.transpose() * (factor_->signs().asDiagonal() * contacts_);
+}
+
+Eigen::VectorXd FreeMotion::coupled_motion(const SolidModel& model, const Model& whole,
+                                           const Eigen::VectorXd& dlambda) {
+  rows_.resize(factor_->borders());
+  gather(model, whole, dlambda);
+  return coupled_.transpose() * rows_;
+}
+
+Eigen::VectorXd FreeMotion::contact_motion(const SolidModel& model, const Model& whole,
+                                           const Eigen::VectorXd& dlambda) {
+  const Eigen::VectorXd coupled = coupled_motion(model, whole, dlambda);
+  return coupled + contacts_.transpose() * factor_->signs().cwiseProduct(y_);
+}
+
+void FreeMotion::push_contacts(const SolidModel& model, const Model& whole, const Eigen::VectorXd& forces,
+                               Eigen::VectorXd& c) const {
+  const Eigen::VectorXd moved = coupled_ * forces;
+  for (std::size_t k = 0; k < model.rows.size(); ++k)
+    c.segment<3>(whole.solid_rows[model.rows[k]].row) += moved.segment<3>(static_cast<Eigen::Index>(3 * k));
+}
+
+void FreeMotion::add_contact_forces(const Eigen::VectorXd& forces) {
+  y_ += contacts_ * forces;
+  free_ += coupled_ * forces;
 }
 
 void FreeMotion::correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "sinew/sim/step_context.hpp"
+#include "sinew/sim/contacts.hpp"
 #include "sinew/solve/direct.hpp"
 
 namespace sinew {
@@ -17,7 +17,8 @@ struct SolidForces {
   solid::Residual nodal;
 };
 /// Memory of earlier forces is used again.
-void solid_forces(const StepContext& context, const State& iterate, int number, SolidForces& forces);
+void solid_forces(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, int number,
+                  SolidForces& forces);
 
 /// The volume's linear response, A dx = f + H^T dlambda, half solved (linalg/sparse_factor): A^-1 = R^T S R, and with
 /// X = R H^T and y = R f
@@ -37,6 +38,19 @@ class FreeMotion {
   /// Motion [m] of the volume's effectors, three numbers each: that of the push, and what multipliers add.
   void effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, bool pushed,
                        Eigen::Ref<Eigen::VectorXd> motion);
+  /// Rows of contacts over the unknowns, beside those of the plan, until the next factor. Skew tangents of pressures
+  /// are left out of what they feel.
+  void set_contact_rows(const linalg::SparseFactor::Rows& rows);
+  /// H_c A^-1 H_c^T.
+  Eigen::MatrixXd contact_compliance() const;
+  /// How multipliers move these rows, and with the force that was pushed.
+  Eigen::VectorXd coupled_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda);
+  Eigen::VectorXd contact_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda);
+  /// How forces on them move the rows of couplings: added to the violations c.
+  void push_contacts(const SolidModel& model, const Model& whole, const Eigen::VectorXd& forces,
+                     Eigen::VectorXd& c) const;
+  /// Adds such forces to what was pushed.
+  void add_contact_forces(const Eigen::VectorXd& forces);
   /// And the second: 3 x nodes displacement of the volume (zero where it is held).
   void correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, Eigen::Matrix3Xd& dx);
   /// What a factor in single precision leaves of the force that was pushed, once (corrected) by dlambda and dx:
@@ -58,6 +72,7 @@ class FreeMotion {
   std::vector<int> rim_;        ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;   ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
+  Eigen::MatrixXd contacts_, coupled_;  ///< R H_c^T, and H A^-1 H_c^T
 };
 
 }  // namespace sinew

@@ -100,6 +100,7 @@ InverseReport inverse_step(const Model& model, Workspace& workspace, const Goal&
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.room);
+  find_contacts(memory.context, iterate.state, memory.here.contacts());
   NewtonRules rules{1, true};
   rules.evaluation = evaluation;
   const auto steer = [&](solve::CoupledSolution& solution) {

@@ -36,18 +36,20 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   free_.resize(solids);
   factored_.assign(solids, Factored::failed);
   reduced_.problem.volumes.resize(solids);
+  evaluate_contacts(context, iterate, contacts_);
+  contacts_ready_ = false;
   beside(
       [&](std::size_t i, StageTimes& own) {
         {
           const Clock clock(own.forces);
-          solid_forces(context, iterate, static_cast<int>(i), forces_[i]);
+          solid_forces(context, iterate, contacts_.touches, static_cast<int>(i), forces_[i]);
         }
         if (then) factor_solid(i, *then, own);
       },
       [&](StageTimes& own) {
         {
           const Clock clock(own.rods);
-          linearize(context, iterate, reduced_);
+          linearize(context, iterate, contacts_.touches, reduced_);
         }
         const Clock clock(own.solve);
         if (then) factor_.eliminate_chains(reduced_.problem);
@@ -118,6 +120,7 @@ void Linearization::factor_border() {
   const Clock clock(times_->solve);
   factor_.factor();
   coupled_ = true;
+  contacts_ready_ = false;
 }
 
 void Linearization::stiffen() {
@@ -158,6 +161,13 @@ void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::R
   const Model& model = context_->model;
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
   factor_.solve(side, increment.reduced);
+  if (ContactForces::wanted(model, *iterate_) && increment.reduced.ok) {
+    if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);
+    contacts_ready_ = true;
+    contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces);
+  } else {
+    increment.forces = {};
+  }
   if (steer && increment.reduced.ok) steer(increment.reduced);
   increment.dx.resize(free_.size());
   if (!increment.reduced.ok) return;
@@ -204,6 +214,10 @@ void Linearization::effector_motion(const Eigen::VectorXd& dlambda, bool pushed,
 
 void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate) {
   for (std::size_t i = 0; i < increment.dx.size(); ++i) iterate.solids[i].x += fraction * increment.dx[i];
+  for (std::size_t i = 0; i < increment.forces.contacts.size(); ++i)
+    iterate.contacts[i].force += fraction * increment.forces.contacts[i];
+  for (std::size_t i = 0; i < increment.forces.frictions.size(); ++i)
+    iterate.points[context.model.rubbing[i]].friction += fraction * increment.forces.frictions[i];
   advance_reduced(context, increment.reduced, fraction, iterate);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "sinew/sim/contact_forces.hpp"
 #include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/reduced.hpp"
 
@@ -15,6 +16,7 @@ namespace sinew {
 struct Increment {
   std::vector<Eigen::Matrix3Xd> dx;  ///< [m] of each solid
   solve::CoupledSolution reduced;
+  ContactChange forces;  ///< of contacts and friction
 };
 
 /// Keeps its memory from one iterate to the next.
@@ -33,6 +35,10 @@ class Linearization {
   bool finite() const;
   const Reduced& reduced() const { return reduced_; }
   const std::vector<SolidForces>& forces() const { return forces_; }
+  ContactRoom& contacts() { return contacts_; }
+  /// [m] how far the forces of contacts are from what their laws ask for.
+  double contact_error() const { return contact_forces_.error(*context_, *iterate_, contacts_); }
+  const solve::CoulombReport& contact_report() const { return contact_forces_.report(); }
 
   /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be. A volume by
   /// itself may be unstable where its couplings hold it (a compressed finger without its cable). Where the whole is,
@@ -90,6 +96,9 @@ class Linearization {
   std::vector<FreeMotion> free_;
   std::vector<StageTimes> spent_;  ///< by each task
   solve::CoupledFactor factor_;
+  ContactRoom contacts_;
+  ContactForces contact_forces_;
+  bool contacts_ready_ = false;  ///< their compliance is that of these factors
   std::vector<Eigen::VectorXd> pushes_;
   solve::RightSide side_;
   std::vector<Eigen::VectorXd> left_;  ///< by a refinement, of which these are the rest and a part

@@ -93,10 +93,16 @@ void number_unknowns(Model& model) {
     model.unknowns += cable.cable.coordinates();
     cable.length_row = model.rows++;
   }
+  for (BodyModel& body : model.bodies) {
+    body.unknown = model.unknowns;
+    model.unknowns += 6;
+  }
   for (PointModel& point : model.points) {
     point.row = model.rows;
     model.rows += 3;
     if (!point.fixed && point.cable_point < 0) point.unknown = model.unknowns++;
+    if (point.unknown >= 0 && point.friction > 0.0)
+      model.rubbing.push_back(static_cast<int>(&point - model.points.data()));
   }
   for (ActuatorModel& actuator : model.actuators) {
     const bool turns = actuator.motion == Motion::rotation;
@@ -114,6 +120,14 @@ void number_unknowns(Model& model) {
     if (actuator.driven == Driven::displacement || actuator.driven == Driven::angle) actuator.row = model.rows++;
   }
   number_ties(model);
+  model.arms.setOnes(model.unknowns);
+  for (const RodModel& rod : model.rods) {
+    for (int i = 0; i < rod.rod.base_coordinates(); ++i) {
+      if (rod.rod.base[i].turns) model.arms[rod.unknown + i] = rod.rod.length();
+    }
+  }
+  for (const BodyModel& body : model.bodies)  // radius of gyration
+    model.arms.segment<3>(body.unknown + 3).setConstant(std::sqrt(body.body.inertia.trace() / (3.0 * body.body.mass)));
 }
 
 /// Constant strain cannot bend without changing volume.
@@ -160,6 +174,7 @@ void count_jumps(Model& model) {
     if (own && own->concentrated()) at(own->rod, 1);
   }
   for (const ActuatorModel& actuator : model.actuators) at(actuator.line.rod, actuator.tendon ? 2 : 0);
+  for (RodModel& rod : model.rods) rod.jumps += static_cast<int>(rod.touching.size());
 }
 
 void measure(Model& model) {
@@ -175,7 +190,13 @@ void measure(Model& model) {
     }
     model.size = std::max(model.size, rod.rod.length());  // a ring is small for its length
   }
+  for (const BodyModel& body : model.bodies) {
+    const Vec3 half = contact::reach(body.shape, body.start.R.transpose());
+    lower = lower.cwiseMin(body.start.p - half);
+    upper = upper.cwiseMax(body.start.p + half);
+  }
   model.size = std::max(model.size, (upper - lower).norm());
+  model.middle = 0.5 * (lower + upper);
 }
 
 }  // namespace
@@ -198,9 +219,9 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     model.warnings.push_back("time.duration is no whole number of steps; the run goes on to the next one, " +
                              text(std::ceil(steps) * scene.time.step) + " s");
   }
-  if (scene.solids.empty() && scene.rods.empty()) {
-    reject("", "", "the scene has neither solids nor rods",
-           "add a `solids:` or `rods:` section; `sinew schema` lists all keys");
+  if (scene.solids.empty() && scene.rods.empty() && scene.bodies.empty()) {
+    reject("", "", "the scene has neither solids nor rods nor bodies",
+           "add a `solids:`, `rods:` or `bodies:` section; `sinew schema` lists all keys");
   }
   if (scene.analysis == Analysis::statics && !(scene.time.duration > 0.0))
     reject("time.duration", text(scene.time.duration) + " s", "must be greater than 0 for `analysis: static`",
@@ -221,6 +242,9 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
                                  " m off its path, which its sections and strains cannot follow");
     }
   }
+  for (const auto& [name, body] : scene.bodies) build_body(model, name, body);
+  for (const auto& [name, obstacle] : scene.obstacles) build_obstacle(model, name, obstacle);
+  build_pairs(model);
   for (const auto& [name, actuator] : scene.actuators) build_actuator(model, name, actuator);
   for (const auto& [name, load] : scene.loads) build_load(model, name, load);
   for (std::size_t i = 0; i < scene.couplings.size(); ++i) {

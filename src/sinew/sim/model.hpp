@@ -10,7 +10,10 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/contact/shape.hpp"
+#include "sinew/contact/tree.hpp"
 #include "sinew/linalg/sparse_factor.hpp"
+#include "sinew/rigid/body.hpp"
 #include "sinew/rod/geometric_cable.hpp"
 #include "sinew/rod/rod.hpp"
 #include "sinew/rod/tendon.hpp"
@@ -39,11 +42,20 @@ struct BlockPlace {
 };
 
 /// A volume, where it is attached, and how its matrix is factored.
+/// Two nodes of a surface's edge, and the third one of each of the triangles that meet in it (the same one where there
+/// is only one triangle).
+struct Ridge {
+  std::array<int, 2> ends, sides;
+};
+
 struct SolidModel {
   std::string name;
   solid::Body body;
   PlacedMesh mesh;
   std::vector<solid::Triangle> surface;
+  std::vector<int> surface_nodes;     ///< that may touch something, ascending
+  std::vector<Ridge> ridges;          ///< likewise: the edges of the surface, where two triangles meet
+  contact::Tree faces, edges;         ///< around the triangles of its surface and its ridges, at rest
   int frame = -1;                     ///< number of its frame, -1: the ground
   std::vector<int> carrier;           ///< per node with held coordinates: number of the frame that holds it
   Eigen::Matrix3Xd springs;           ///< [N/m] per node and axis
@@ -68,7 +80,8 @@ struct RodModel {
   int unknown = 0;        ///< first of its base's coordinates in z
   int jumps = 0;          ///< places, at most, where its internal forces jump
   Eigen::VectorXd start;  ///< coordinates at t = 0
-  double path_deviation = 0;  ///< [m] how far the rod's sections stay off the path they were laid along
+  std::vector<double> touching;  ///< [m] abscissae that may touch something
+  double path_deviation = 0;     ///< [m] how far the rod's sections stay off the path they were laid along
 };
 
 /// The massless cable without stiffness, the paper's baseline: all its coordinates are unknowns z.
@@ -80,6 +93,37 @@ struct GeometricCableModel {
   int frame = -1;
   int unknown = 0;      ///< first of its coordinates in z
   int length_row = -1;  ///< row of its constant length
+};
+
+/// A rigid body: its place and its turn are unknowns z.
+struct BodyModel {
+  std::string name;
+  rigid::Body body;
+  contact::Shape shape;  ///< in axes at the centre of mass
+  rigid::Motion start;
+  int unknown = 0;  ///< first of six in z: displacement and turn in the world's axes
+};
+
+/// What stands still, or is carried by a frame.
+struct ObstacleModel {
+  std::string name;
+  contact::Shape shape;
+  Placement pose;  ///< in the world at t = 0
+  int frame = -1;
+};
+
+/// Something that can be touched, by its kind and its number among that.
+struct Collider {
+  enum class Kind { obstacle, body, solid, rod };
+  Kind kind = Kind::obstacle;
+  int number = 0;
+  bool operator==(const Collider&) const = default;
+};
+
+/// Two that stop each other.
+struct PairModel {
+  Collider a, b;
+  double friction = 0.0, restitution = 0.0;
 };
 
 /// A rod or a cable by its number among its kind.
@@ -96,6 +140,7 @@ struct PointModel {
   double abscissa = 0.0;  ///< [m] at t = 0; beyond the tip: it waits for it
   bool fixed = false;     ///< to the rod's material: an anchor
   int unknown = -1;       ///< of its abscissa in z; -1 if fixed or on a cable
+  double friction = 0.0;  ///< Coulomb's coefficient of rod and channel
   int cable_point = -1;   ///< number on a cable
   int row = 0;            ///< first of its three rows
 };
@@ -181,7 +226,8 @@ struct EffectorModel {
 
 struct OutputModel {
   std::string name;
-  int solid = -1, rod = -1;
+  int solid = -1, rod = -1, body = -1, pair = -1;
+  bool turned = false;         ///< of a pair: its second is the one whose force is told
   solid::EmbeddedPoint where;  ///< on the solid
   double abscissa = 0.0;       ///< on the rod
   std::vector<bool> nodes;     ///< of the solid, that a reaction is summed over
@@ -203,6 +249,10 @@ struct Model {
   std::vector<SolidModel> solids;
   std::vector<RodModel> rods;
   std::vector<GeometricCableModel> cables;
+  std::vector<BodyModel> bodies;
+  std::vector<ObstacleModel> obstacles;
+  std::vector<PairModel> pairs;
+  std::vector<int> rubbing;  ///< points with friction
   std::vector<PointModel> points;
   std::vector<PointModel> dropped;  ///< asked for, but determined by others: no rows, only watched
   std::vector<TieModel> ties;
@@ -213,12 +263,14 @@ struct Model {
   std::vector<OutputModel> outputs;
   std::vector<CouplingFacts> couplings;
   std::vector<std::string> warnings;
-  int unknowns = 0;                      ///< size of z: coordinates of bases and cables, abscissae, what ties follow
+  int unknowns = 0;  ///< size of z: coordinates of bases, cables and rigid bodies, abscissae, what ties follow
   int first_followed = 0, followed = 0;  ///< of the latter among them
+  Eigen::VectorXd arms;                  ///< per unknown z: [m] by which a moment is compared with forces, 1 of forces
   int rows = 0;                          ///< multipliers
   double start_energy = 0.0;             ///< [J] stored at t = 0, in rods that do not lie at rest
   std::vector<Eigen::Matrix3Xd> start_masses;  ///< [m] mass points of each rod at t = 0
   double size = 0.0;                           ///< [m] diagonal of everything at rest: the yardstick of lengths
+  Vec3 middle = Vec3::Zero();                  ///< [m] of it
 };
 
 using MeshReader = std::function<solid::Mesh(const std::filesystem::path&)>;

@@ -114,6 +114,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   };
   const auto complete = [&] {
     finish(context, iterate.state, memory.room);
+    finish_contacts(here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     return report;
   };
@@ -140,7 +141,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       const std::string where = broken_cell(context.model, iterate.state);
       return where.empty() ? fail(Status::diverged, "forces are not finite") : fail(Status::inverted, where);
     }
-    if (rules.fixed ? report.newton == rules.limit : report.newton > 0 && balanced(context.model, here, stiffness)) {
+    if (rules.fixed ? report.newton == rules.limit
+                    : report.newton > 0 && balanced(context.model, here, stiffness) &&
+                          here.contact_error() <= context.model.scene.newton.tolerance * context.model.size) {
       write_forces(here, iterate.state);
       return complete();
     }

@@ -11,7 +11,8 @@ namespace sinew {
 
 namespace {
 
-/// Sliding points and anchors of a rod: c = P - gamma, and lambda . gamma_s = 0 where the abscissa is free.
+/// Sliding points and anchors of a rod: c = P - gamma, and lambda . gamma_s = f where the abscissa is free, with f the
+/// friction in the channel.
 void add_points(RodRows& rod) {
   solve::CoupledProblem& problem = rod.problem();
   const State& iterate = rod.iterate();
@@ -39,7 +40,7 @@ void add_points(RodRows& rod) {
     rod.slide(s, lambda, point.unknown);
     reduced.violation = std::max(reduced.violation, constraint::violation(on_curve, P));
     problem.G.add(point.row, point.unknown, on_curve.derivative);
-    problem.r[point.unknown] = lambda.dot(on_curve.derivative);
+    problem.r[point.unknown] = lambda.dot(on_curve.derivative) - iterate.points[k].friction;
     reduced.largest = std::max(reduced.largest, std::abs(problem.r[point.unknown]));
   }
 }
@@ -90,6 +91,51 @@ void add_actuator(const StepContext& context, const State& iterate, std::size_t 
   reduced.violation = std::max(reduced.violation, std::abs(off) * arm);
 }
 
+/// Forces of contacts on a rod's surface.
+void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const ContactState& own = rod.iterate().contacts[i];
+    each_side(own, touches[i],
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
+                if (side.on != Collider{Collider::Kind::rod, rod.number()}) return;
+                for (int k = 0; k < side.local.corners(); ++k) {
+                  const rod::Branch frame = rod::branch(rod.shape(), side.abscissae[k]);
+                  const Vec3 out = sign * -touches[i].nearest.normal * side.local.radius;
+                  rod.load({side.abscissae[k], frame.R.transpose() * out, -sign * weights[k] * own.force});
+                }
+                (void)at;
+                rod.reduced().scale = std::max(rod.reduced().scale, own.force.norm());
+              });
+  }
+}
+
+/// Inertia, weight and contacts of rigid bodies.
+void add_bodies(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced) {
+  const Model& model = context.model;
+  solve::CoupledProblem& problem = reduced.problem;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyModel& own = model.bodies[i];
+    const rigid::Equations equations =
+        rigid::equations(own.body, context.start.bodies[i], iterate.bodies[i], context.rate, context.gravity);
+    problem.r.segment<6>(own.unknown) += equations.r;
+    problem.B.add(own.unknown, own.unknown, equations.tangent);
+    reduced.scale = std::max(
+        reduced.scale, own.body.mass * (context.gravity.norm() + (context.start.bodies[i].v * context.rate).norm()));
+  }
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const ContactState& contact = iterate.contacts[i];
+    each_side(contact, touches[i],
+              [&](const ContactSide& side, const std::array<double, 3>&, const Vec3& at, double sign) {
+                if (side.on.kind != Collider::Kind::body) return;
+                const Vec3 force = sign * contact.force;
+                auto r = problem.r.segment<6>(model.bodies[side.on.number].unknown);
+                r.head<3>() -= force;
+                r.tail<3>() -= (at - iterate.bodies[side.on.number].p).cross(force);
+                reduced.scale = std::max(reduced.scale, force.norm());
+              });
+  }
+}
+
 /// Unknowns that a tie follows on a solid: c = sum w x - z.
 void add_followed(const StepContext& context, const State& iterate, Reduced& reduced) {
   solve::CoupledProblem& problem = reduced.problem;
@@ -106,7 +152,7 @@ void add_followed(const StepContext& context, const State& iterate, Reduced& red
 
 }  // namespace
 
-void linearize(const StepContext& context, const State& iterate, Reduced& reduced) {
+void linearize(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced) {
   const Model& model = context.model;
   solve::CoupledProblem& problem = reduced.problem;
   problem.B.clear();
@@ -123,20 +169,15 @@ void linearize(const StepContext& context, const State& iterate, Reduced& reduce
     RodRows rod(context, iterate, static_cast<int>(i), reduced);
     add_points(rod);
     add_ties(rod);
+    add_touches(rod, touches);
     rod.finish();
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i) add_cable(context, iterate, static_cast<int>(i), reduced);
   for (std::size_t i = 0; i < model.actuators.size(); ++i) add_actuator(context, iterate, i, reduced);
+  add_bodies(context, iterate, touches, reduced);
   add_followed(context, iterate, reduced);
-  // Unknowns of the border are lengths, but for the turns of bases.
-  const auto count = [&](double force) { reduced.largest = std::max(reduced.largest, std::abs(force)); };
-  int next = 0;
-  for (const RodModel& rod : model.rods) {
-    for (; next < rod.unknown; ++next) count(problem.r[next]);
-    for (int i = 0; i < rod.rod.base_coordinates(); ++i, ++next)
-      count(problem.r[next] / (rod.rod.base[i].turns ? rod.rod.length() : 1.0));
-  }
-  for (; next < model.unknowns; ++next) count(problem.r[next]);
+  if (model.unknowns > 0)
+    reduced.largest = std::max(reduced.largest, (problem.r.array() / model.arms.array()).abs().maxCoeff());
 }
 
 void clear(const Model& model, solve::RightSide& side) {
@@ -158,6 +199,11 @@ void advance_reduced(const StepContext& context, const solve::CoupledSolution& s
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i)
     iterate.cables[i].z += fraction * solution.dz.segment(model.cables[i].unknown, model.cables[i].cable.coordinates());
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const auto own = solution.dz.segment<6>(model.bodies[i].unknown);
+    iterate.bodies[i].p += fraction * own.head<3>();
+    iterate.bodies[i].R = lie::exp(fraction * own.tail<3>()) * iterate.bodies[i].R;
+  }
   for (std::size_t k = 0; k < model.points.size(); ++k) {
     if (model.points[k].unknown >= 0) iterate.points[k].s += fraction * solution.dz[model.points[k].unknown];
   }
@@ -167,6 +213,8 @@ void advance_reduced(const StepContext& context, const solve::CoupledSolution& s
 
 double largest_turn(const StepContext& context, const solve::CoupledSolution& solution) {
   double turn = 0.0;
+  for (const BodyModel& body : context.model.bodies)
+    turn = std::max(turn, solution.dz.segment<3>(body.unknown + 3).norm());
   for (std::size_t n = 0; n < context.model.rods.size(); ++n) {
     const RodModel& model = context.model.rods[n];
     const rod::Rod& rod = model.rod;

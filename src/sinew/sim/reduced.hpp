@@ -4,7 +4,7 @@
 
 #include "sinew/rod/forces.hpp"
 #include "sinew/rod/geometric_cable.hpp"
-#include "sinew/sim/step_context.hpp"
+#include "sinew/sim/contacts.hpp"
 #include "sinew/solve/direct.hpp"
 
 namespace sinew {
@@ -32,9 +32,9 @@ struct Reduced {
   double violation = 0.0;  ///< [m] largest violation of a row
 };
 
-/// Linearises rods, cables, sliding points, ties, motors and loads at an iterate. Memory of an earlier one is used
-/// again.
-void linearize(const StepContext& context, const State& iterate, Reduced& reduced);
+/// Linearises rods, cables, rigid bodies, sliding points, ties, motors, loads and forces of contacts at an iterate.
+/// Memory of an earlier one is used again.
+void linearize(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced);
 
 /// Zeros for every reduced unknown, row and strain, in the memory of an earlier one.
 void clear(const Model& model, solve::RightSide& side);

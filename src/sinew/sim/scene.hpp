@@ -242,6 +242,7 @@ struct Slide {
   std::vector<Vec3> channel;  ///< instead of `points`: where the points are in the solid at rest [m], in its own frame;
                               ///< those beyond the rod's tip wait for it
   AnchorTip anchor_tip = AnchorTip::position;
+  double friction = 0.0;        ///< Coulomb's coefficient between rod and channel, >= 0
   std::optional<double> reach;  ///< [m] how far outside the mesh a point may lie; 10 % of the body's diagonal
 };
 
@@ -309,16 +310,77 @@ struct RodLoad {
 using Load = std::variant<RodLoad, SolidLoad>;
 
 /// What is recorded of a material point, of a solid (`point`) or a rod (`at`); `reaction`: the force with which a
-/// solid's held nodes in `region` are held.
+/// solid's held nodes in `region` are held. Of a rigid body where its centre of mass is, or the force of all that
+/// touches it. Of two objects (`between`) how they touch.
 enum class Quantity { position, displacement, strain, force, moment, stress, reaction };
 struct Output {
   std::optional<std::string> solid;
   std::optional<std::string> rod;
+  std::optional<std::string> body;
+  std::vector<std::string> between;        ///< two names
   Point point;                             ///< on a solid
   std::optional<double> at;                ///< [m] abscissa on a rod
   std::optional<double> reach;             ///< as for Slide
   std::optional<Region> region;            ///< of a reaction; none: all
   Quantity quantity = Quantity::position;  ///< displacement and reaction: of a solid; force and moment: of a rod
+};
+
+/// Shapes of rigid bodies and obstacles, in their own axes with the middle at the origin.
+struct BoxShape {
+  Vec3 size = Vec3::Zero();  ///< [m] > 0, edges
+};
+
+struct SphereShape {
+  double radius = 0.0;  ///< [m] > 0
+};
+
+/// About z.
+struct CylinderShape {
+  double radius = 0.0, length = 0.0;  ///< [m] > 0
+};
+
+/// All within `radius` of a segment along z.
+struct CapsuleShape {
+  double radius = 0.0;  ///< [m] > 0
+  double length = 0.0;  ///< [m] > 0, of the segment, without the round ends
+};
+
+using BodyShape = std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape>;
+
+/// A half-space, whose surface goes through a point. Of obstacles only.
+struct PlaneShape {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< [m]; outward, any length
+};
+
+/// A rigid body that moves freely but for what it touches.
+struct RigidBody {
+  BodyShape shape;
+  Pose pose;
+  std::optional<double> mass, density;  ///< [kg] or [kg/m^3] > 0, exactly one
+  Vec3 velocity = Vec3::Zero();         ///< [m/s] at the start
+  Vec3 spin = Vec3::Zero();             ///< [rad/s] at the start, axes of the world
+};
+
+/// Something rigid that stands still, or is carried by a frame.
+struct Obstacle {
+  std::variant<PlaneShape, BoxShape, SphereShape, CylinderShape, CapsuleShape> shape;
+  Pose pose;
+  std::optional<std::string> frame;
+};
+
+/// What holds for one pair of objects, by their names, instead of the rules of all. Solids and rods meet each other
+/// only where a pair says so; a solid named twice meets itself.
+struct ContactPair {
+  std::string first, second;
+  std::optional<double> friction, restitution;
+  bool off = false;  ///< they pass through each other
+};
+
+/// Rigid bodies and obstacles stop each other, solids and rods.
+struct Contact {
+  double friction = 0.5;     ///< Coulomb's coefficient, >= 0
+  double restitution = 0.0;  ///< Newton's, 0 to 1: how much of the speed of approach a hit gives back
+  std::vector<ContactPair> pairs;
 };
 
 /// What is computed. `dynamic`: the motion; `quasi_static`: equilibrium at every time of the grid, without inertia and
@@ -360,6 +422,9 @@ struct Scene {
   Named<Frame> frames;
   Named<Solid> solids;
   Named<Rod> rods;
+  Named<RigidBody> bodies;
+  Named<Obstacle> obstacles;
+  Contact contact;
   std::vector<Coupling> couplings;
   Named<Actuator> actuators;
   Named<Load> loads;

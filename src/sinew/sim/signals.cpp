@@ -84,8 +84,51 @@ SignalGroup solid_group(const OutputModel& output) {
   return position_group(output);
 }
 
+/// Force [N] of all that touches a body.
+Vec3 touching_force(const State& state, int body) {
+  const Collider own{Collider::Kind::body, body};
+  Vec3 sum = Vec3::Zero();
+  for (const ContactState& contact : state.contacts) {
+    if (contact.a.on == own) sum += contact.force;
+    if (contact.b.on == own) sum -= contact.force;
+  }
+  return sum;
+}
+
+SignalGroup body_group(const OutputModel& output) {
+  const int body = output.body;
+  const bool force = output.quantity == Quantity::force;
+  return {named(output.name, {"x", "y", "z"}), [=](const Model&, const State& state) {
+            return numbers(force ? touching_force(state, body) : state.bodies[body].p);
+          }};
+}
+
+SignalGroup pair_group(const OutputModel& output) {
+  const int pair = output.pair;
+  const double sign = output.turned ? -1.0 : 1.0;
+  return {named(output.name, {"x", "y", "z", "normal", "contacts", "sliding", "gap"}),
+          [=](const Model& model, const State& state) {
+            Vec3 sum = Vec3::Zero();
+            double normal = 0.0, contacts = 0.0, sliding = 0.0, gap = INFINITY;
+            for (const ContactState& own : state.contacts) {
+              if (own.pair != pair) continue;
+              // Sides are in the order in which their parts met, not in that of the pair.
+              sum += (own.a.on == model.pairs[pair].a ? sign : -sign) * own.force;
+              const double pressed = own.force.dot(own.normal);
+              normal += pressed;
+              contacts += 1.0;
+              gap = std::min(gap, own.gap);
+              sliding += slides(own, model.pairs[pair].friction) ? 1.0 : 0.0;
+            }
+            return std::vector<double>{
+                sum.x(), sum.y(), sum.z(), normal, contacts, sliding, contacts > 0.0 ? gap : 0.0};
+          }};
+}
+
 SignalGroup output_group(const OutputModel& output) {
   if (output.solid >= 0) return solid_group(output);
+  if (output.body >= 0) return body_group(output);
+  if (output.pair >= 0) return pair_group(output);
   const int rod = output.rod;
   const double s = output.abscissa;
   switch (output.quantity) {
@@ -178,6 +221,7 @@ std::vector<double> signal_values(const Model& model, const State& state) {
 
 Vec3 output_position(const Model& model, const State& state, const OutputModel& output) {
   if (output.solid >= 0) return solid_point(model, state, output.solid, output.where);
+  if (output.body >= 0) return state.bodies[output.body].p;
   return rod::position(rod_shape(model, state, output.rod), output.abscissa);
 }
 
@@ -217,6 +261,11 @@ EnergyBalance energy_balance(const Model& model, const State& state) {
     if (springs.size() == 0) continue;
     const Eigen::Matrix3Xd drawn = spring_stretch(model.solids[i], moved(model, state, model.solids[i].frame), own.x);
     balance.elastic += 0.5 * springs.cwiseProduct(drawn.cwiseAbs2()).sum();
+  }
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyModel& body = model.bodies[i];
+    balance.kinetic += rigid::kinetic_energy(body.body, state.bodies[i]);
+    balance.weight -= body.body.mass * g.dot(state.bodies[i].p - body.start.p);
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const rod::Rod& rod = model.rods[i].rod;

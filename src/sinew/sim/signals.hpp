@@ -19,17 +19,19 @@ struct SignalGroup {
 ///   mode.frequency [Hz], of a modal analysis only, negative where the equilibrium is unstable;
 ///   <output>.x|y|z [m], or .torsion .. .shear_z [1/m, -] of `strain`, .x|y|z in the axes of the cross-section of
 ///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; of a
-///   solid also .xx .. of `strain` and `stress` and .x|y|z of `reaction` (NOTATION.md has all); <actuator>.displacement
-///   [m] and .force [N], or .angle [rad] and .torque [N m]; energy.kinetic|elastic|weight|work|dissipated [J]: weight
-///   is that of the gravitational field, 0 at the start; work is done by motors, loads and moving supports of solids,
-///   dissipated is what is missing in the balance: damping of the material and of the time step (and, with a minus,
-///   work of frames that move bases and ties of rods).
+///   solid also .xx .. of `strain` and `stress` and .x|y|z of `reaction` (NOTATION.md has all); of a rigid body .x|y|z
+///   of its place or of the force on it; of two that touch .x|y|z, the force on the first, .normal [N], the sum of
+///   normal forces, .contacts, their number, .sliding, how many of them slide, .gap [m], the least;
+///   <actuator>.displacement [m] and .force [N], or .angle [rad] and .torque [N m];
+///   energy.kinetic|elastic|weight|work|dissipated [J]: weight is that of the gravitational field, 0 at the start; work
+///   is done by motors, loads and moving supports of solids, dissipated is what is missing in the balance: damping of
+///   the material and of the time step (and, with a minus, work of frames that move bases and ties of rods).
 std::vector<SignalGroup> signal_groups(const Model& model);
 
 std::vector<std::string> signal_names(const Model& model);
 std::vector<double> signal_values(const Model& model, const State& state);
 
-/// Position [m] of an output.
+/// Position [m] of an output, other than of a pair.
 Vec3 output_position(const Model& model, const State& state, const OutputModel& output);
 
 /// Largest distance [m] between a dropped sliding point and its rod: what the rows that were left out would have said.

@@ -40,6 +40,19 @@ struct RodSnapshot {
   std::vector<Field> fields;
 };
 
+/// A rigid body or an obstacle as triangles.
+struct BodySnapshot {
+  std::string name;
+  Eigen::Matrix3Xd points;  ///< [m]
+  std::vector<solid::Triangle> surface;
+  bool ground = false;  ///< a half-space, of which this is a piece
+};
+
+/// A force [N] at a point [m] where two objects touch, on the one that `normal` points to.
+struct ForceSnapshot {
+  Eigen::Vector3d position, force, normal;
+};
+
 struct MarkSnapshot {
   std::string name;
   Eigen::Vector3d position;  ///< [m]
@@ -51,6 +64,8 @@ struct Snapshot {
   std::string status;  ///< of the step that led here
   std::vector<SolidSnapshot> solids;
   std::vector<RodSnapshot> rods;
+  std::vector<BodySnapshot> bodies;
+  std::vector<ForceSnapshot> contacts;
   std::vector<MarkSnapshot> sliding_points;  ///< points that are on a rod
   std::vector<MarkSnapshot> outputs;
 };

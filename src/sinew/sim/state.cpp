@@ -36,10 +36,11 @@ State initial_state(const Model& model) {
   }
   for (const GeometricCableModel& cable : model.cables)
     state.cables.push_back({Eigen::VectorXd::Zero(cable.cable.coordinates())});
+  for (const BodyModel& body : model.bodies) state.bodies.push_back(body.start);
   state.lambda.setZero(model.rows);
   for (const PointModel& point : model.points) {
     const bool waits = point.line.rod >= 0 && point.abscissa > model.rods[point.line.rod].rod.length();
-    state.points.push_back({point.abscissa, !waits});
+    state.points.push_back({point.abscissa, 0.0, !waits});
     if (point.cable_point >= 0) {
       const SolidModel& solid = model.solids[point.solid];
       state.cables[point.line.cable].z.segment<3>(1 + 3 * point.cable_point) =
@@ -58,6 +59,12 @@ State initial_state(const Model& model) {
   state.loads.assign(model.loads.size(), 0.0);
   if (model.scene.analysis == Analysis::statics) state.path.direction.setZero(path_size(model));
   return state;
+}
+
+bool slides(const ContactState& contact, double friction) {
+  const double pressed = contact.force.dot(contact.normal);
+  const Vec3 along = contact.force - pressed * contact.normal;
+  return contact.slip > 0.0 && along.norm() >= (1.0 - 1e-6) * friction * pressed;
 }
 
 namespace {
@@ -82,7 +89,16 @@ void each_number(StateType& state, const Visit& visit) {
     array(rod.internal);
   }
   for (auto& cable : state.cables) array(cable.z);
-  for (auto& point : state.points) visit(point.s);
+  for (auto& body : state.bodies) {
+    array(body.p);
+    array(body.R);
+    array(body.v);
+    array(body.w);
+  }
+  for (auto& point : state.points) {
+    visit(point.s);
+    visit(point.friction);
+  }
   array(state.followed);
   array(state.lambda);
   for (auto& value : state.actuators) visit(value);
@@ -96,31 +112,59 @@ void each_number(StateType& state, const Visit& visit) {
   visit(state.frequency);
 }
 
+/// The same of a contact, but for what it is between.
+template <class Contact, class Visit>
+void each_number_of(Contact& contact, const Visit& visit) {
+  for (auto* three : {&contact.force, &contact.point, &contact.normal}) {
+    for (auto& value : *three) visit(value);
+  }
+  visit(contact.gap);
+  visit(contact.slip);
+}
+constexpr std::size_t kContactNumbers = 13;
+
 }  // namespace
 
 bool finite(const State& state) {
   bool all = true;
   each_number(state, [&all](double value) { all &= std::isfinite(value); });
+  for (const ContactState& contact : state.contacts) all &= contact.force.allFinite();
   return all;
 }
 
 std::vector<double> pack(const State& state) {
-  std::vector<double> numbers{static_cast<double>(state.grid)};
+  std::vector<double> numbers{static_cast<double>(state.grid), static_cast<double>(state.contacts.size())};
   for (const PointState& point : state.points) numbers.push_back(point.on ? 1.0 : 0.0);
   numbers.push_back(state.path.stable ? 1.0 : 0.0);
   each_number(state, [&numbers](double value) { numbers.push_back(value); });
+  for (const ContactState& contact : state.contacts) {
+    numbers.push_back(contact.pair);
+    numbers.push_back(static_cast<double>(contact.part));
+    each_number_of(contact, [&numbers](double value) { numbers.push_back(value); });
+  }
   return numbers;
 }
 
 State unpack(const Model& model, const std::vector<double>& numbers) {
   State state = initial_state(model);
-  if (numbers.size() != pack(state).size())
+  const std::size_t plain = pack(state).size(), more = numbers.size() < plain ? 0 : numbers.size() - plain;
+  const std::size_t contacts = more / kContactNumbers;
+  if (numbers.size() < plain || more % kContactNumbers != 0 || numbers[1] != static_cast<double>(contacts))
     throw std::invalid_argument("the recorded state does not belong to this model");
   std::size_t at = 0;
   state.grid = static_cast<long>(numbers[at++]);
+  state.contacts.resize(static_cast<std::size_t>(numbers[at++]));
   for (PointState& point : state.points) point.on = numbers[at++] != 0.0;
   state.path.stable = numbers[at++] != 0.0;
   each_number(state, [&](double& value) { value = numbers[at++]; });
+  for (ContactState& contact : state.contacts) {
+    const double pair = numbers[at++], part = numbers[at++];
+    if (!(pair >= 0.0 && pair < static_cast<double>(model.pairs.size()) && part >= 0.0 && part < 0x1p53))
+      throw std::invalid_argument("the recorded contacts do not belong to this model");
+    contact.pair = static_cast<int>(pair);
+    contact.part = static_cast<std::uint64_t>(part);
+    each_number_of(contact, [&](double& value) { value = numbers[at++]; });
+  }
   return state;
 }
 

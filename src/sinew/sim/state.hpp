@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,8 +27,31 @@ struct CableState {
   Eigen::VectorXd z;  ///< [m] (how far its base is out, points)
 };
 
+/// One side of a contact: a part of a collider, carried by its motion.
+struct ContactSide {
+  Collider on;
+  contact::Simplex local;             ///< of a rigid body in its axes, of an obstacle in the world at t = 0; its kind
+  std::array<int, 3> nodes{};         ///< or its corners: of a solid
+  std::array<double, 3> abscissae{};  ///< [m] of a rod
+};
+
+/// What touches, or may touch, at the end of a step.
+struct ContactState {
+  int pair = 0;               ///< of the model's
+  std::uint64_t part = 0;     ///< of the two, by which a contact is known again in the next step
+  ContactSide a, b;           ///< of a contact in the making; those of a finished step are found again
+  Vec3 force = Vec3::Zero();  ///< [N] on a; b feels the opposite
+  Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< [m] on b; from b to a
+  double gap = 0.0;                                  ///< [m]
+  double slip = 0.0;                                 ///< [m] in the step
+};
+
+/// Whether it slides, against all the friction there is.
+bool slides(const ContactState& contact, double friction);
+
 struct PointState {
-  double s = 0.0;  ///< [m] abscissa
+  double s = 0.0;         ///< [m] abscissa
+  double friction = 0.0;  ///< [N] of the rod on its channel, along the rod towards its tip
   /// False: the rod's end has passed it, and its rows are off. sim/step_ends switches it; sim/reduced leaves its rows
   /// empty, sim/free_motion its force and its part of H, sim/view does not show it.
   bool on = true;
@@ -54,6 +78,8 @@ struct State {
   std::vector<SolidState> solids;
   std::vector<RodState> rods;
   std::vector<CableState> cables;
+  std::vector<rigid::Motion> bodies;
+  std::vector<ContactState> contacts;
   std::vector<PointState> points;
   Eigen::VectorXd followed;       ///< [m] what ties to bodies follow, in the order of their unknowns
   Eigen::VectorXd lambda;         ///< [N] multipliers of all rows; of an angle [N m]
@@ -71,9 +97,9 @@ bool finite(const State& state);
 
 /// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
 /// refused.
-inline constexpr std::uint64_t kStateLayout = 3;
-/// The state as plain numbers in a fixed order, and back. unpack throws std::invalid_argument if the size is not this
-/// model's.
+inline constexpr std::uint64_t kStateLayout = 4;
+/// The state as plain numbers in a fixed order, contacts at the end, and back. unpack throws std::invalid_argument if
+/// their number, or a contact's pair, is not this model's.
 std::vector<double> pack(const State& state);
 State unpack(const Model& model, const std::vector<double>& numbers);
 

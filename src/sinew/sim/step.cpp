@@ -57,6 +57,7 @@ StepReport step(const Model& model, Workspace& workspace, const Command& command
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.room);
+  find_contacts(memory.context, iterate.state, memory.here.contacts());
   const Newton& wanted = model.scene.newton;
   const bool fixed = wanted.iterations > 0;
   NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};

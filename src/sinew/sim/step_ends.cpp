@@ -57,6 +57,7 @@ void follow_points(const StepContext& context, State& iterate, rod::Configuratio
     if (!state.on) {
       state.s = rod.length() * (1.0 + 1e-12);
       iterate.lambda.segment<3>(point.row).setZero();
+      state.friction = 0.0;
     }
   }
 }
@@ -157,6 +158,8 @@ void finish(const StepContext& context, State& next, rod::Configuration& shape) 
     rod::mass_positions(shape, own.masses);
     own.velocity = (own.masses - context.start.rods[i].masses) * context.rate;
   }
+  for (std::size_t i = 0; i < next.bodies.size(); ++i)
+    rigid::set_velocities(context.start.bodies[i], context.rate, next.bodies[i]);
   for (std::size_t i = 0; i < next.actuators.size(); ++i) {
     const int row = model.actuators[i].row;
     next.actuators[i] = row < 0 ? context.command.actuators[i] : next.lambda[row];

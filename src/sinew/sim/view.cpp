@@ -74,6 +74,21 @@ RodSnapshot sample_rod(const Model& model, const State& state, int number) {
   return sample;
 }
 
+/// Of a half-space a square as large as the scene, below its middle.
+BodySnapshot sample_body(const Model& model, const std::string& name, const contact::Shape& shape,
+                         const Placement& place) {
+  BodySnapshot sample;
+  sample.name = name;
+  sample.ground = std::holds_alternative<contact::HalfSpace>(shape);
+  contact::Skin skin = contact::skin(shape, model.size);
+  sample.points.resize(3, static_cast<Eigen::Index>(skin.points.size()));
+  const Vec3 middle = sample.ground ? Vec3(place.R.transpose() * (model.middle - place.p)) : Vec3(Vec3::Zero());
+  for (std::size_t i = 0; i < skin.points.size(); ++i)
+    sample.points.col(static_cast<Eigen::Index>(i)) = apply(place, skin.points[i] + Vec3(middle.x(), middle.y(), 0.0));
+  sample.surface = std::move(skin.triangles);
+  return sample;
+}
+
 }  // namespace
 
 std::string when(const Model& model, const State& state) {
@@ -128,12 +143,18 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
     view.rods.push_back(sample_rod(model, state, static_cast<int>(i)));
   for (std::size_t i = 0; i < model.cables.size(); ++i)
     view.rods.push_back(sample_cable(model, state, static_cast<int>(i)));
+  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+    view.bodies.push_back(
+        sample_body(model, model.bodies[i].name, model.bodies[i].shape, {state.bodies[i].R, state.bodies[i].p}));
+  for (const ObstacleModel& own : model.obstacles)
+    view.bodies.push_back(sample_body(model, own.name, own.shape, compose(moved(model, state, own.frame), own.pose)));
+  for (const ContactState& own : state.contacts) view.contacts.push_back({own.point, own.force, own.normal});
   for (std::size_t k = 0; k < model.points.size(); ++k) {
     if (!state.points[k].on) continue;
     view.sliding_points.push_back({"", solid_point(model, state, model.points[k].solid, model.points[k].where)});
   }
   for (const OutputModel& output : model.outputs) {
-    if (output.quantity != Quantity::position) continue;
+    if (output.quantity != Quantity::position || output.pair >= 0) continue;
     view.outputs.push_back({output.name, output_position(model, state, output)});
   }
   return view;

@@ -1,0 +1,241 @@
+#include "sinew/contact/meeting.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sinew::contact {
+
+namespace {
+
+Vec3 into(const Pose& pose, const Vec3& x) { return pose.R.transpose() * (x - pose.p); }
+
+Simplex moved(const Pose& pose, Simplex own) {
+  for (int i = 0; i < own.corners(); ++i) own.x[i] = pose * own.x[i];
+  own.normal = pose.R * own.normal;
+  return own;
+}
+
+/// The points of a cylinder's rims that are lowest along -n, and those across.
+void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& points) {
+  Vec3 down(-n.x(), -n.y(), 0.0);
+  down = down.norm() > 1e-9 ? Vec3(down.normalized()) : Vec3(Vec3::UnitX());
+  const Vec3 across(-down.y(), down.x(), 0.0);
+  for (const double end : {-0.5, 0.5}) {
+    const Vec3 cap(0.0, 0.0, end * cylinder.length);
+    for (const Vec3& direction : {down, across, Vec3(-down), Vec3(-across)})
+      points.push_back(point_at(cap + cylinder.radius * direction, 0.0));
+  }
+}
+
+bool round(const Shape& shape) { return std::holds_alternative<Ball>(shape) || std::holds_alternative<Capsule>(shape); }
+
+/// One shape while it meets another one.
+class Meet {
+ public:
+  Meet(double alarm, std::vector<Meeting>& found) : alarm_(alarm), found_(found) {}
+
+  /// Points of a against the nearest parts of b.
+  void points(const std::vector<Simplex>& of_a, const Pose& at, const Shape& b, const Pose& there, bool swapped) {
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+      const Simplex part = nearest_part(b, into(there, at * of_a[i].x[0]));
+      add(of_a[i], at, part, there, 16 * static_cast<std::uint32_t>(i), swapped);
+    }
+  }
+
+  void add(const Simplex& a, const Pose& at, const Simplex& b, const Pose& there, std::uint32_t key, bool swapped) {
+    if (nearest(moved(at, a), moved(there, b)).gap >= alarm_) return;
+    found_.push_back({a, b, key, swapped});
+  }
+
+  /// A round shape against any other.
+  void round_shape(const Shape& a, const Pose& at, const Shape& b, const Pose& there, bool swapped) {
+    if (const Ball* ball = std::get_if<Ball>(&a)) {
+      points({point_at(Vec3::Zero(), ball->radius)}, at, b, there, swapped);
+      return;
+    }
+    const Capsule& capsule = std::get<Capsule>(a);
+    const Vec3 end(0.0, 0.0, 0.5 * capsule.length);
+    points({point_at(-end, capsule.radius), point_at(end, capsule.radius)}, at, b, there, swapped);
+    const Simplex axis = segment_at(-end, end, Vec3::Zero(), capsule.radius);
+    if (const Convex* convex = std::get_if<Convex>(&b)) {
+      const Polyhedron& own = convex->surface;
+      for (std::size_t e = 0; e < own.edges.size(); ++e) {
+        const Vec3 outward = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
+        const Simplex edge = segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], outward, 0.0);
+        const Nearest there_is = nearest(moved(at, axis), moved(there, edge));
+        // Ends are the business of the points.
+        if (there_is.a[1] > 0.0 && there_is.a[1] < 1.0)
+          add(axis, at, edge, there, 1000 + static_cast<std::uint32_t>(e), swapped);
+      }
+    } else if (const Capsule* other = std::get_if<Capsule>(&b)) {
+      const Vec3 tip(0.0, 0.0, 0.5 * other->length);
+      add(axis, at, segment_at(-tip, tip, Vec3::Zero(), other->radius), there, 1, swapped);
+      points({point_at(-tip, other->radius), point_at(tip, other->radius)}, there, a, at, !swapped);
+    } else if (const Cylinder* barrel = std::get_if<Cylinder>(&b)) {
+      const Vec3 tip(0.0, 0.0, 0.5 * barrel->length);
+      const Simplex side = segment_at(-tip, tip, Vec3::Zero(), barrel->radius);
+      const Nearest there_is = nearest(moved(at, axis), moved(there, side));
+      if (there_is.b[1] > 0.0 && there_is.b[1] < 1.0) add(axis, at, side, there, 1, swapped);
+    }
+  }
+
+  void polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, const Pose& there);
+
+ private:
+  double alarm_;
+  std::vector<Meeting>& found_;
+};
+
+/// Largest distance of Q from the plane of a face of P, over all faces.
+struct FaceAxis {
+  double separation = -INFINITY;
+  std::size_t face = 0;
+};
+FaceAxis best_face(const Polyhedron& P, const std::vector<Vec3>& Q_in_P) {
+  FaceAxis best;
+  for (std::size_t f = 0; f < P.faces.size(); ++f) {
+    const Vec3 &n = P.normals[f], &x = P.corners[P.faces[f][0]];
+    double least = INFINITY;
+    for (const Vec3& corner : Q_in_P) least = std::min(least, n.dot(corner - x));
+    if (least > best.separation) best = {least, f};
+  }
+  return best;
+}
+
+struct EdgeAxis {
+  double separation = -INFINITY;
+  std::size_t of_P = 0, of_Q = 0;
+};
+EdgeAxis best_edges(const Polyhedron& P, const Polyhedron& Q, const std::vector<Vec3>& Q_in_P, const Pose& Q_to_P) {
+  EdgeAxis best;
+  for (std::size_t i = 0; i < P.edges.size(); ++i) {
+    const Vec3& x = P.corners[P.edges[i][0]];
+    const Vec3 d = P.corners[P.edges[i][1]] - x;
+    const Vec3 &n1 = P.normals[P.sides[i][0]], &n2 = P.normals[P.sides[i][1]];
+    for (std::size_t j = 0; j < Q.edges.size(); ++j) {
+      const Vec3& y = Q_in_P[Q.edges[j][0]];
+      const Vec3 e = Q_in_P[Q.edges[j][1]] - y;
+      // On the sphere of normals an edge is an arc; the two edges meet only where these cross (Gauss map).
+      const Vec3 m1 = -(Q_to_P.R * Q.normals[Q.sides[j][0]]), m2 = -(Q_to_P.R * Q.normals[Q.sides[j][1]]);
+      const Vec3 n12 = n2.cross(n1), m12 = m2.cross(m1);
+      const double m1_side = m1.dot(n12), m2_side = m2.dot(n12), n1_side = n1.dot(m12), n2_side = n2.dot(m12);
+      if (!(m1_side * m2_side < 0.0 && n1_side * n2_side < 0.0 && m1_side * n2_side > 0.0)) continue;
+      Vec3 axis = d.cross(e);
+      if (axis.squaredNorm() < 1e-12 * d.squaredNorm() * e.squaredNorm()) continue;
+      axis.normalize();
+      if (axis.dot(n1 + n2) < 0.0) axis = -axis;
+      const double separation = axis.dot(y - x);
+      if (separation > best.separation) best = {separation, i, j};
+    }
+  }
+  return best;
+}
+
+/// What of a polygon is on the inner side of a plane.
+void clip(std::vector<Vec3>& polygon, const Vec3& x, const Vec3& outward) {
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+    const double a = outward.dot(from - x), b = outward.dot(to - x);
+    if (a <= 0.0) kept.push_back(from);
+    if ((a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0)) kept.push_back(from + a / (a - b) * (to - from));
+  }
+  polygon = std::move(kept);
+}
+
+/// At most eight of many corners: the farthest along as many directions in the plane.
+void thin(std::vector<Vec3>& polygon, const Vec3& n) {
+  constexpr std::size_t kMost = 8;
+  if (polygon.size() <= kMost) return;
+  const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+  std::vector<Vec3> kept;
+  for (std::size_t k = 0; k < kMost; ++k) {
+    const double angle = 2.0 * M_PI * static_cast<double>(k) / kMost;
+    const Vec3 way = std::cos(angle) * x + std::sin(angle) * y;
+    const auto farthest = std::max_element(polygon.begin(), polygon.end(),
+                                           [&](const Vec3& a, const Vec3& b) { return way.dot(a) < way.dot(b); });
+    kept.push_back(*farthest);
+    polygon.erase(farthest);
+  }
+  polygon = std::move(kept);
+}
+
+void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, const Pose& there) {
+  const Pose Q_to_P{at.R.transpose() * there.R, into(at, there.p)};
+  const Pose P_to_Q{Q_to_P.R.transpose(), into(there, at.p)};
+  std::vector<Vec3> Q_in_P, P_in_Q;
+  for (const Vec3& corner : Q.corners) Q_in_P.push_back(Q_to_P * corner);
+  for (const Vec3& corner : P.corners) P_in_Q.push_back(P_to_Q * corner);
+  const FaceAxis of_P = best_face(P, Q_in_P);
+  if (of_P.separation >= alarm_) return;
+  const FaceAxis of_Q = best_face(Q, P_in_Q);
+  if (of_Q.separation >= alarm_) return;
+  const EdgeAxis edges = best_edges(P, Q, Q_in_P, Q_to_P);
+  if (edges.separation >= alarm_) return;
+  double size = 0.0;
+  for (const Vec3& corner : P.corners) size = std::max(size, corner.norm());
+  // Faces where they say about the same: their patch does not flicker.
+  const double clearly = 1e-3 * size;
+  if (edges.separation > std::max(of_P.separation, of_Q.separation) + clearly) {
+    const auto edge = [](const Polyhedron& own, std::size_t e) {
+      const Vec3 outward = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
+      return segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], outward, 0.0);
+    };
+    found_.push_back({edge(Q, edges.of_Q), edge(P, edges.of_P),
+                      static_cast<std::uint32_t>(100000 + 1000 * edges.of_P + edges.of_Q), true});
+    return;
+  }
+  const bool on_Q = of_Q.separation > of_P.separation + clearly;
+  const Polyhedron &reference = on_Q ? Q : P, &incident = on_Q ? P : Q;
+  const std::vector<Vec3>& corners = on_Q ? P_in_Q : Q_in_P;
+  const Pose& back = on_Q ? Q_to_P : P_to_Q;
+  const Eigen::Matrix3d& turn = on_Q ? P_to_Q.R : Q_to_P.R;
+  const std::size_t face = on_Q ? of_Q.face : of_P.face;
+  const Vec3 &n = reference.normals[face], &x = reference.corners[reference.faces[face][0]];
+  std::size_t facing = 0;
+  for (std::size_t f = 1; f < incident.faces.size(); ++f) {
+    if (n.dot(turn * incident.normals[f]) < n.dot(turn * incident.normals[facing])) facing = f;
+  }
+  std::vector<Vec3> polygon;
+  for (const int corner : incident.faces[facing]) polygon.push_back(corners[corner]);
+  const std::vector<int>& around = reference.faces[face];
+  for (std::size_t i = 0; i < around.size() && !polygon.empty(); ++i) {
+    const Vec3 &from = reference.corners[around[i]], &to = reference.corners[around[(i + 1) % around.size()]];
+    clip(polygon, from, (to - from).cross(n));
+  }
+  std::erase_if(polygon, [&](const Vec3& p) { return n.dot(p - x) >= alarm_; });
+  thin(polygon, n);
+  const auto key = static_cast<std::uint32_t>(200000 + (on_Q ? 1000000 : 0) + 16 * face);
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    found_.push_back({point_at(back * polygon[i], 0.0), plane_at(x, n), key + static_cast<std::uint32_t>(i), !on_Q});
+}
+
+}  // namespace
+
+void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double alarm,
+          std::vector<Meeting>& found) {
+  Meet meeting(alarm, found);
+  if (round(first)) return meeting.round_shape(first, at, second, there, false);
+  if (round(second)) return meeting.round_shape(second, there, first, at, true);
+  if (std::holds_alternative<HalfSpace>(first) || std::holds_alternative<HalfSpace>(second)) {
+    const bool swapped = std::holds_alternative<HalfSpace>(first);
+    const Shape &body = swapped ? second : first, &space = swapped ? first : second;
+    const Pose &of_body = swapped ? there : at, &of_space = swapped ? at : there;
+    std::vector<Simplex> points;
+    if (const Convex* convex = std::get_if<Convex>(&body)) {
+      for (const Vec3& corner : convex->surface.corners) points.push_back(point_at(corner, 0.0));
+    } else if (const Cylinder* cylinder = std::get_if<Cylinder>(&body)) {
+      add_rims(*cylinder, of_body.R.transpose() * of_space.R.col(2), points);
+    }
+    return meeting.points(points, of_body, space, of_space, swapped);
+  }
+  const auto polyhedron = [](const Shape& shape) {
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) return prism(cylinder->radius, cylinder->length, 48);
+    return std::get<Convex>(shape).surface;
+  };
+  meeting.polyhedra(polyhedron(first), at, polyhedron(second), there);
+}
+
+}  // namespace sinew::contact

@@ -1,0 +1,31 @@
+// Which parts of two rigid shapes are near each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/contact/shape.hpp"
+
+namespace sinew::contact {
+
+/// x -> R x + p.
+struct Pose {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Vec3 p = Vec3::Zero();
+  Vec3 operator*(const Vec3& x) const { return R * x + p; }
+};
+
+/// A part of each of two shapes, each in its own axes. `key` tells the parts from others of the same two shapes.
+struct Meeting {
+  Simplex a, b;
+  std::uint32_t key = 0;
+  bool swapped = false;  ///< a is of the second shape, b of the first
+};
+
+/// Adds all that may touch where the shapes come nearer than `alarm` [m]. Two polyhedra meet along the axis that
+/// separates them most: as corners of one clipped to a face of the other, or as two edges. Cylinders count as prisms
+/// of 48 sides there, and are round to all else.
+void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double alarm,
+          std::vector<Meeting>& found);
+
+}  // namespace sinew::contact

@@ -1,0 +1,65 @@
+// Shapes of rigid bodies and obstacles, in their own axes: what a point near one touches, volume and inertia.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "sinew/contact/polyhedron.hpp"
+#include "sinew/contact/simplex.hpp"
+
+namespace sinew::contact {
+
+/// The half-space z < 0. Of obstacles only.
+struct HalfSpace {};
+
+struct Ball {
+  double radius = 0.0;  ///< [m] > 0
+};
+
+/// All within `radius` of a segment on z with its middle at the origin.
+struct Capsule {
+  double radius = 0.0;  ///< [m] > 0
+  double length = 0.0;  ///< [m] of the segment, >= 0
+};
+
+/// About z, its middle at the origin.
+struct Cylinder {
+  double radius = 0.0, length = 0.0;  ///< [m] > 0
+};
+
+/// A box or a hull.
+struct Convex {
+  Polyhedron surface;
+};
+
+using Shape = std::variant<HalfSpace, Ball, Capsule, Cylinder, Convex>;
+
+/// The part of a shape's surface that is nearest to p: a point, a segment or the plane of a face, with its thickness.
+/// Inside a polyhedron, or a cylinder near its ends, it is the face that is soonest reached.
+Simplex nearest_part(const Shape& shape, const Vec3& p);
+
+/// The points and segments by which a shape presses into a surface that gives way: corners, edges, and the middle or
+/// the axis of what is round, with its radius. Of edges `normal` is between their faces'.
+std::vector<Simplex> prongs(const Shape& shape);
+
+/// Half the edges of the smallest box about the origin that holds it in the directions of `axes` (columns); infinite
+/// where it is.
+Vec3 reach(const Shape& shape, const Eigen::Matrix3d& axes);
+
+/// Its surface as triangles, counter-clockwise seen from outside; round ones by facets, of a half-space a square with
+/// edges of `size` [m].
+struct Skin {
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 3>> triangles;
+};
+Skin skin(const Shape& shape, double size);
+
+struct Bulk {
+  double volume = 0.0;                                    ///< [m^3]
+  Vec3 centre = Vec3::Zero();                             ///< [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< [m^5] about it, of unit density
+};
+/// Throws std::invalid_argument for a half-space.
+Bulk bulk(const Shape& shape);
+
+}  // namespace sinew::contact

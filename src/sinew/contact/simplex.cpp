@@ -1,0 +1,208 @@
+#include "sinew/contact/simplex.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace sinew::contact {
+
+Simplex point_at(const Vec3& x, double radius) {
+  Simplex own;
+  own.x[0] = x;
+  own.radius = radius;
+  return own;
+}
+
+Simplex segment_at(const Vec3& from, const Vec3& to, const Vec3& outward, double radius) {
+  Simplex own;
+  own.kind = Simplex::Kind::segment;
+  own.x = {from, to, Vec3::Zero()};
+  own.normal = outward;
+  own.radius = radius;
+  return own;
+}
+
+Simplex plane_at(const Vec3& x, const Vec3& normal) {
+  Simplex own;
+  own.kind = Simplex::Kind::plane;
+  own.x[0] = x;
+  own.normal = normal;
+  return own;
+}
+
+std::array<double, 2> on_segment(const Vec3& p, const Vec3& x, const Vec3& y) {
+  const Vec3 d = y - x;
+  const double length = d.squaredNorm();
+  const double t = length > 0.0 ? std::clamp(d.dot(p - x) / length, 0.0, 1.0) : 0.0;
+  return {1.0 - t, t};
+}
+
+// Outside an edge's plane the nearest point is on that edge or beyond its ends; inside all three it is above the face.
+std::array<double, 3> on_triangle(const Vec3& p, const Vec3& x, const Vec3& y, const Vec3& z) {
+  const Vec3 n = (y - x).cross(z - x);
+  const double area = n.squaredNorm();
+  const double wx = n.dot((y - p).cross(z - p)), wy = n.dot((z - p).cross(x - p)), wz = n.dot((x - p).cross(y - p));
+  if (area > 0.0 && wx >= 0.0 && wy >= 0.0 && wz >= 0.0) {
+    const double sum = wx + wy + wz;
+    return {wx / sum, wy / sum, wz / sum};
+  }
+  const std::array<const Vec3*, 3> corner = {&x, &y, &z};
+  std::array<double, 3> best{};
+  double least = INFINITY;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const auto [s, t] = on_segment(p, *corner[i], *corner[j]);
+    const double distance = (s * *corner[i] + t * *corner[j] - p).squaredNorm();
+    if (distance >= least) continue;
+    least = distance;
+    best = {};
+    best[i] = s;
+    best[j] = t;
+  }
+  return best;
+}
+
+namespace {
+
+Vec3 point_of(const Simplex& simplex, const std::array<double, 3>& weights) {
+  Vec3 p = Vec3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.corners()); ++i) p += weights[i] * simplex.x[i];
+  return p;
+}
+
+/// The nearest points of two segments. Where they are parallel, the middle of what lies side by side.
+void cross_segments(const Simplex& a, const Simplex& b, Nearest& found) {
+  const Vec3 d = a.x[1] - a.x[0], e = b.x[1] - b.x[0], r = a.x[0] - b.x[0];
+  const double dd = d.squaredNorm(), ee = e.squaredNorm(), de = d.dot(e), dr = d.dot(r), er = e.dot(r);
+  const double apart = dd * ee - de * de;
+  double s = 0.5;
+  if (apart > 1e-12 * dd * ee) {
+    s = std::clamp((de * er - ee * dr) / apart, 0.0, 1.0);
+  } else if (dd > 0.0) {
+    // b's ends along a.
+    const double one = std::clamp(-dr / dd, 0.0, 1.0), other = std::clamp((de - dr) / dd, 0.0, 1.0);
+    s = 0.5 * (one + other);
+  }
+  double t = ee > 0.0 ? (de * s + er) / ee : 0.0;
+  if (t < 0.0 || t > 1.0) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = dd > 0.0 ? std::clamp((de * t - dr) / dd, 0.0, 1.0) : 0.0;
+  }
+  found.a = {1.0 - s, s, 0.0};
+  found.b = {1.0 - t, t, 0.0};
+}
+
+/// Along the line between the two points; where that has no direction, the one that is told.
+void along_distance(const Simplex& a, const Simplex& b, const Vec3& otherwise, Nearest& found) {
+  const Vec3 d = point_of(a, found.a) - point_of(b, found.b);
+  const double distance = d.norm();
+  found.normal = distance > 0.0 ? Vec3(d / distance) : otherwise;
+  found.gap = distance;
+}
+
+}  // namespace
+
+Nearest nearest(const Simplex& a, const Simplex& b) {
+  using enum Simplex::Kind;
+  Nearest found;
+  if (a.kind == segment && b.kind == segment) {
+    cross_segments(a, b, found);
+    const double s = found.a[1], t = found.b[1];
+    const Vec3 across = (a.x[1] - a.x[0]).cross(b.x[1] - b.x[0]);
+    const bool inside = s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0;
+    // Edges of bodies cross on the outside of both, which `normal` of b tells; thick ones are apart.
+    if (inside && b.normal.squaredNorm() > 0.0 && across.squaredNorm() > 0.0) {
+      found.normal = across.normalized() * (across.dot(b.normal) < 0.0 ? -1.0 : 1.0);
+      found.gap = found.normal.dot(point_of(a, found.a) - point_of(b, found.b));
+    } else {
+      const Vec3 otherwise = b.normal.isZero() && !across.isZero() ? Vec3(across.normalized()) : b.normal;
+      along_distance(a, b, otherwise, found);
+    }
+  } else if (a.kind == point) {
+    found.a[0] = 1.0;
+    const Vec3& p = a.x[0];
+    switch (b.kind) {
+      case point:
+        found.b[0] = 1.0;
+        along_distance(a, b, Vec3::UnitX(), found);
+        break;
+      case segment: {
+        const auto [s, t] = on_segment(p, b.x[0], b.x[1]);
+        found.b = {s, t, 0.0};
+        along_distance(a, b, (b.x[1] - b.x[0]).unitOrthogonal(), found);
+        break;
+      }
+      case triangle: {
+        found.b = on_triangle(p, b.x[0], b.x[1], b.x[2]);
+        const Vec3 n = (b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]).normalized();
+        const Vec3 d = p - point_of(b, found.b);
+        if (found.b[0] > 0.0 && found.b[1] > 0.0 && found.b[2] > 0.0) {
+          found.normal = n;
+          found.gap = n.dot(d);
+        } else {
+          along_distance(a, b, n, found);
+          if (d.dot(n) < 0.0) {
+            found.normal = -found.normal;
+            found.gap = -found.gap;
+          }
+        }
+        break;
+      }
+      case plane:
+        found.b[0] = 1.0;
+        found.normal = b.normal;
+        found.gap = b.normal.dot(p - b.x[0]);
+        break;
+    }
+  } else {
+    throw std::invalid_argument("contact::nearest: a point or two segments are needed");
+  }
+  found.gap -= a.radius + b.radius;
+  return found;
+}
+
+namespace {
+
+Vec3 across(const Simplex& a, const Simplex& b) { return (a.x[1] - a.x[0]).cross(b.x[1] - b.x[0]); }
+
+Vec3 face_normal(const Simplex& b) {
+  return b.kind == Simplex::Kind::plane ? b.normal : Vec3((b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]).normalized());
+}
+
+bool inside(const std::array<double, 3>& weights, int corners) {
+  return std::all_of(weights.begin(), weights.begin() + corners, [](double weight) { return weight > 0.0; });
+}
+
+}  // namespace
+
+Facing facing(const Simplex& a, const Simplex& b) {
+  using enum Simplex::Kind;
+  using enum Facing::Kind;
+  const Nearest found = nearest(a, b);
+  const bool thin = a.radius + b.radius == 0.0;
+  if (b.kind == plane) return {face, found.normal};
+  if (b.kind == triangle) {
+    const double edge = std::max((b.x[1] - b.x[0]).norm(), (b.x[2] - b.x[0]).norm());
+    if (inside(found.b, 3) || (thin && std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
+  }
+  if (a.kind == segment && b.kind == segment && inside(found.a, 2) && inside(found.b, 2) && !b.normal.isZero() &&
+      !across(a, b).isZero())
+    return {crossing, found.normal};
+  return {thin ? fixed : apart, found.normal};
+}
+
+Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
+  Nearest found = nearest(a, b);
+  if (kept.kind == Facing::Kind::apart) return found;
+  found.normal = kept.normal;
+  if (kept.kind == Facing::Kind::face) found.normal = face_normal(b);
+  if (kept.kind == Facing::Kind::crossing) {
+    const Vec3 both = across(a, b).normalized();
+    if (!both.isZero()) found.normal = both.dot(kept.normal) < 0.0 ? Vec3(-both) : both;
+  }
+  found.gap = found.normal.dot(point_of(a, found.a) - point_of(b, found.b)) - a.radius - b.radius;
+  return found;
+}
+
+}  // namespace sinew::contact

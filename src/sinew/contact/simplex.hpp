@@ -1,0 +1,54 @@
+// Pairs of points, segments, triangles and planes: how near they come, and along which normal.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace sinew::contact {
+
+using Vec3 = Eigen::Vector3d;
+
+/// What touches: a point, a segment or a triangle with a thickness around it, or a half-space below a plane through one
+/// point. Triangles know their outside, by the order of their corners.
+struct Simplex {
+  enum class Kind { point, segment, triangle, plane };
+  Kind kind = Kind::point;
+  std::array<Vec3, 3> x;       ///< [m] as many as the kind has: 1, 2, 3, 1
+  Vec3 normal = Vec3::Zero();  ///< out of a half-space; of a segment what stands for it where the two cross
+  double radius = 0.0;         ///< [m]
+  int corners() const { return kind == Kind::triangle ? 3 : kind == Kind::segment ? 2 : 1; }
+};
+
+Simplex point_at(const Vec3& x, double radius);
+/// `outward` may be zero where it is not known.
+Simplex segment_at(const Vec3& from, const Vec3& to, const Vec3& outward, double radius);
+Simplex plane_at(const Vec3& x, const Vec3& normal);
+
+/// The points of two simplices that are nearest to each other, as weights of their corners, and the normal from b to a.
+struct Nearest {
+  std::array<double, 3> a{}, b{};
+  Vec3 normal = Vec3::Zero();
+  double gap = 0.0;  ///< [m] between their surfaces, negative where they overlap
+};
+
+/// Of a point and any other, or two segments; others are refused with std::invalid_argument. Above and below a triangle
+/// the normal is its own, so that it does not turn where the point passes through. The gap's derivative along any
+/// motion of the corners is normal . (sum of a dx_a - sum of b dx_b).
+Nearest nearest(const Simplex& a, const Simplex& b);
+
+/// How two simplices face each other, chosen once and kept while they move a little, so that the normal is smooth: by
+/// the face of b, across both edges, along the line between their nearest points (thick ones, which stay apart), or
+/// along a fixed direction (thin ones beside a face or past an end, where that line turns about as they touch).
+struct Facing {
+  enum class Kind { face, crossing, apart, fixed };
+  Kind kind = Kind::fixed;
+  Vec3 normal = Vec3::Zero();
+};
+Facing facing(const Simplex& a, const Simplex& b);
+Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept);
+
+/// Weights of the corners at the point of a segment or triangle that is nearest to p.
+std::array<double, 2> on_segment(const Vec3& p, const Vec3& x, const Vec3& y);
+std::array<double, 3> on_triangle(const Vec3& p, const Vec3& x, const Vec3& y, const Vec3& z);
+
+}  // namespace sinew::contact

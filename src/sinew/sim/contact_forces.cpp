@@ -1,0 +1,243 @@
+#include "sinew/sim/contact_forces.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/places.hpp"
+
+namespace sinew {
+
+namespace {
+
+using Kind = Collider::Kind;
+constexpr double kTolerance = 1e-10;
+
+}  // namespace
+
+void ContactForces::add_rows(const StepContext& context, const State& iterate, const ContactRoom& room,
+                             const Reduced& reduced) {
+  const Model& model = context.model;
+  on_bodies_.clear();
+  on_rods_.clear();
+  on_solids_.resize(model.solids.size());
+  rows_of_.assign(model.solids.size(), {});
+  std::vector<std::vector<Eigen::Triplet<double>>> entries(model.solids.size());
+  for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
+    const Touch& touch = room.touches[i];
+    const auto contact = static_cast<int>(i);
+    each_side(iterate.contacts[i], touch,
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
+                const Eigen::Matrix3d rows = sign * touch.frame.transpose();
+                switch (side.on.kind) {
+                  case Kind::obstacle:
+                    break;
+                  case Kind::body: {
+                    OnBody own{contact, model.bodies[side.on.number].unknown, Eigen::Matrix3Xd(3, 6)};
+                    own.J << rows, -rows * lie::hat(at - iterate.bodies[side.on.number].p);
+                    on_bodies_.push_back(own);
+                    break;
+                  }
+                  case Kind::solid: {
+                    const solid::Body& body = model.solids[side.on.number].body;
+                    std::vector<int>& known = rows_of_[side.on.number];
+                    if (known.empty() || known.back() != 3 * contact + 2) {
+                      for (int r = 0; r < 3; ++r) known.push_back(3 * contact + r);
+                    }
+                    const auto first = static_cast<int>(known.size()) - 3;
+                    for (int k = 0; k < side.local.corners(); ++k) {
+                      for (int axis = 0; axis < 3; ++axis) {
+                        const int unknown = body.unknown(axis, side.nodes[k]);
+                        if (unknown < 0) continue;
+                        for (int r = 0; r < 3; ++r)
+                          entries[side.on.number].emplace_back(first + r, unknown, rows(r, axis) * weights[k]);
+                      }
+                    }
+                    break;
+                  }
+                  case Kind::rod: {
+                    const RodModel& rod = model.rods[side.on.number];
+                    const rod::Configuration& shape = reduced.rods[side.on.number].shape;
+                    const int nb = rod.rod.base_coordinates();
+                    Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, nb + rod.rod.strain_coordinates());
+                    const Vec3 out = sign * -touch.nearest.normal * side.local.radius;
+                    for (int k = 0; k < side.local.corners(); ++k) {
+                      const Vec3 offset = rod::branch(shape, side.abscissae[k]).R.transpose() * out;
+                      J += weights[k] * rod::position_jacobian(shape, side.abscissae[k], offset);
+                    }
+                    J = (rows * J).eval();
+                    if (nb > 0) on_bodies_.push_back({contact, rod.unknown, J.leftCols(nb)});
+                    on_rods_.push_back({contact, side.on.number, J.rightCols(rod.rod.strain_coordinates())});
+                    break;
+                  }
+                }
+              });
+  }
+  touching_ = iterate.contacts.size();
+  rubbing_.clear();
+  for (const int k : model.rubbing) {
+    const PointModel& point = model.points[k];
+    Rubbing& own = rubbing_.emplace_back();
+    own.point = k;
+    own.row = point.row;
+    if (!iterate.points[k].on) continue;
+    own.friction = point.friction;
+    own.tangent = rod::curve_point(reduced.rods[point.line.rod].shape, iterate.points[k].s).derivative.normalized();
+    on_bodies_.push_back({contacts() - 1, point.unknown, Eigen::Matrix3Xd(Vec3::UnitY())});
+  }
+  for (std::size_t s = 0; s < model.solids.size(); ++s) {
+    on_solids_[s].resize(static_cast<Eigen::Index>(rows_of_[s].size()), model.solids[s].body.unknowns);
+    on_solids_[s].setFromTriplets(entries[s].begin(), entries[s].end());
+  }
+}
+
+/// How the rows move with a reduced solution: bodies, rods, and volumes pushed by their coupling rows are another part.
+void ContactForces::motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const {
+  for (const OnBody& own : on_bodies_)
+    u.segment<3>(3 * own.contact) += own.J * solution.dz.segment(own.unknown, own.J.cols());
+  for (const OnRod& own : on_rods_) u.segment<3>(3 * own.contact) += own.J * solution.dq[own.rod];
+}
+
+void ContactForces::prepare(const StepContext& context, const State& iterate, const ContactRoom& room,
+                            const Reduced& reduced, std::vector<FreeMotion>& free, solve::CoupledFactor& factor) {
+  add_rows(context, iterate, room, reduced);
+  const int n = 3 * contacts();
+  problem_.D.setZero(n, n);
+  problem_.mu.setOnes(n / 3);
+  for (std::size_t i = 0; i < touching_; ++i)
+    problem_.mu[static_cast<Eigen::Index>(i)] = context.model.pairs[iterate.contacts[i].pair].friction;
+  for (std::size_t s = 0; s < free.size(); ++s) {
+    if (rows_of_[s].empty()) continue;
+    free[s].set_contact_rows(on_solids_[s]);
+    const Eigen::MatrixXd own = free[s].contact_compliance();
+    for (std::size_t i = 0; i < rows_of_[s].size(); ++i) {
+      for (std::size_t j = 0; j < rows_of_[s].size(); ++j)
+        problem_.D(rows_of_[s][i], rows_of_[s][j]) += own(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  for (int row = 0; row < n; ++row) {
+    if (row >= 3 * static_cast<int>(touching_) && row % 3 != 1) continue;
+    lambda_ = Eigen::VectorXd::Unit(n, row);
+    respond(context, free, factor, lambda_);
+    motion(answer_, problem_.D.col(row));
+    for (std::size_t s = 0; s < free.size(); ++s) {
+      if (rows_of_[s].empty()) continue;
+      own_ = free[s].coupled_motion(context.model.solids[s], context.model, answer_.dlambda);
+      for (std::size_t i = 0; i < rows_of_[s].size(); ++i)
+        problem_.D(rows_of_[s][i], row) += own_[static_cast<Eigen::Index>(i)];
+    }
+  }
+  problem_.D = (0.5 * (problem_.D + problem_.D.transpose())).eval();
+  for (std::size_t i = touching_; i < static_cast<std::size_t>(contacts()); ++i) {
+    const auto k = static_cast<Eigen::Index>(3 * i);
+    double& own = problem_.D(k + 1, k + 1);
+    if (!(own > 0.0)) own = 1.0;  // a point beyond the tip
+    problem_.D(k, k) = problem_.D(k + 2, k + 2) = own;
+  }
+}
+
+/// What forces at the contacts add to a right side of the reduced problem.
+void ContactForces::push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
+                         solve::RightSide& side) {
+  for (const OnBody& own : on_bodies_)
+    side.r.segment(own.unknown, own.J.cols()) -= own.J.transpose() * lambda.segment<3>(3 * own.contact);
+  for (const OnRod& own : on_rods_) side.chains[own.rod] -= own.J.transpose() * lambda.segment<3>(3 * own.contact);
+  for (std::size_t s = 0; s < free.size(); ++s) {
+    if (!rows_of_[s].empty())
+      free[s].push_contacts(context.model.solids[s], context.model, lambda(rows_of_[s]), side.c);
+  }
+}
+
+void ContactForces::respond(const StepContext& context, std::vector<FreeMotion>& free, solve::CoupledFactor& factor,
+                            const Eigen::VectorXd& lambda) {
+  clear(context.model, side_);
+  push(context, lambda, free, side_);
+  factor.solve(side_, answer_);
+}
+
+ContactForces::At ContactForces::at(const StepContext& context, const State& iterate, const ContactRoom& room,
+                                    int contact) const {
+  const auto i = static_cast<std::size_t>(contact);
+  if (i < touching_) {
+    return {room.touches[i].frame.transpose() * iterate.contacts[i].force,
+            room.touches[i].u - Vec3(room.least[i], 0.0, 0.0)};
+  }
+  const Rubbing& own = rubbing_[i - touching_];
+  const PointState& point = iterate.points[own.point];
+  return {Vec3(own.limit(iterate.lambda), point.friction, 0.0),
+          Vec3(0.0, point.s - context.start.points[own.point].s, 0.0)};
+}
+
+void ContactForces::solve(const StepContext& context, const State& iterate, const ContactRoom& room,
+                          std::vector<FreeMotion>& free, solve::CoupledFactor& factor, solve::CoupledSolution& solution,
+                          ContactChange& change) {
+  constexpr int kMostTurns = 50;
+  const auto n = static_cast<Eigen::Index>(3 * contacts());
+  problem_.b.resize(n);
+  old_.resize(n);
+  for (int i = 0; i < contacts(); ++i) {
+    const At own = at(context, iterate, room, i);
+    problem_.b.segment<3>(3 * i) = own.u;
+    old_.segment<3>(3 * i) = own.force;
+  }
+  motion(solution, problem_.b);
+  for (std::size_t s = 0; s < free.size(); ++s) {
+    if (rows_of_[s].empty()) continue;
+    own_ = free[s].contact_motion(context.model.solids[s], context.model, solution.dlambda);
+    for (std::size_t i = 0; i < rows_of_[s].size(); ++i)
+      problem_.b[rows_of_[s][i]] += own_[static_cast<Eigen::Index>(i)];
+  }
+  problem_.b -= problem_.D * old_;
+  lambda_ = old_;
+  rows_ = iterate.lambda + solution.dlambda;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    // What presses a rod against its channel depends on its friction elsewhere: along the rod each turn settles one
+    // point more, and all of them soon.
+    double changed = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(3 * (touching_ + i));
+      const double limit = rubbing_[i].limit(rows_);
+      changed = std::max(changed, std::abs(limit + problem_.b[k] / problem_.D(k, k)));
+      largest = std::max(largest, limit);
+      problem_.b[k] = -problem_.D(k, k) * limit;
+      problem_.b[k + 2] = 0.0;
+    }
+    if (turn > 0 && changed <= kTolerance * largest) break;
+    report_ = coulomb_.solve(problem_, kTolerance, lambda_);
+    respond(context, free, factor, lambda_ - old_);
+    rows_ = iterate.lambda + solution.dlambda + answer_.dlambda;
+    if (rubbing_.empty()) break;
+  }
+  const Eigen::VectorXd more = lambda_ - old_;
+  solution += answer_;
+  solution.ok = solution.ok && answer_.ok;
+  for (std::size_t s = 0; s < free.size(); ++s) {
+    if (!rows_of_[s].empty()) free[s].add_contact_forces(more(rows_of_[s]));
+  }
+  change.contacts.resize(touching_);
+  for (std::size_t i = 0; i < touching_; ++i)
+    change.contacts[i] = room.touches[i].frame * more.segment<3>(static_cast<Eigen::Index>(3 * i));
+  change.frictions.resize(rubbing_.size());
+  for (std::size_t i = 0; i < rubbing_.size(); ++i)
+    change.frictions[i] = more[static_cast<Eigen::Index>(3 * (touching_ + i) + 1)];
+}
+
+double ContactForces::error(const StepContext& context, const State& iterate, const ContactRoom& room) const {
+  if (!wanted(context.model, iterate)) return 0.0;
+  if (problem_.D.rows() != 3 * contacts() || touching_ != iterate.contacts.size()) return INFINITY;
+  double worst = 0.0;
+  for (int i = 0; i < contacts(); ++i) {
+    const Eigen::Index k = 3 * i;
+    const auto [force, u] = at(context, iterate, room, i);
+    const double normal = problem_.D(k, k), tangent = 0.5 * (problem_.D(k + 1, k + 1) + problem_.D(k + 2, k + 2));
+    worst = std::max(worst, std::abs(std::min(normal * force[0], u[0])));
+    const double radius = problem_.mu[i] * std::max(0.0, force[0]) * tangent;
+    const Eigen::Vector2d t = tangent * force.tail<2>(), aim = t - u.tail<2>();
+    const double length = aim.norm();
+    const Eigen::Vector2d on = length > radius ? Eigen::Vector2d(aim * (radius / length)) : aim;
+    worst = std::max(worst, (t - on).norm());
+  }
+  return worst;
+}
+
+}  // namespace sinew

@@ -1,0 +1,87 @@
+// Contacts and rods that rub in their channels, in the linear problem of a step: their compliance D, once everything
+// else is eliminated, and the forces that Signorini's and Coulomb's laws ask for.
+#pragma once
+
+#include "sinew/sim/contacts.hpp"
+#include "sinew/sim/free_motion.hpp"
+#include "sinew/sim/reduced.hpp"
+#include "sinew/solve/coulomb.hpp"
+
+namespace sinew {
+
+/// What forces change by: of each contact, in the world, and of friction at each of the model's rubbing points [N].
+struct ContactChange {
+  std::vector<Vec3> contacts;
+  std::vector<double> frictions;
+};
+
+/// Keeps its memory from one linearisation to the next.
+class ContactForces {
+ public:
+  /// Whether there is anything to do.
+  static bool wanted(const Model& model, const State& iterate) {
+    return !iterate.contacts.empty() || !model.rubbing.empty();
+  }
+  /// Rows J of all contacts, in their frames, and D = J A^-1 J^T with A the matrix of the whole step, coupling rows
+  /// included. `factor` and `free` must be factored. Where a rod rubs in its channel, J is the point's abscissa.
+  void prepare(const StepContext& context, const State& iterate, const ContactRoom& room, const Reduced& reduced,
+               std::vector<FreeMotion>& free, solve::CoupledFactor& factor);
+  /// Finds the forces that go with the solution so far, and adds to it what they change.
+  void solve(const StepContext& context, const State& iterate, const ContactRoom& room, std::vector<FreeMotion>& free,
+             solve::CoupledFactor& factor, solve::CoupledSolution& solution, ContactChange& change);
+  /// [m] how far the forces of an iterate are from what the laws ask for, told as displacements by the D of the last
+  /// `prepare`; that of the first is not known, and infinite.
+  double error(const StepContext& context, const State& iterate, const ContactRoom& room) const;
+
+  const solve::CoulombReport& report() const { return report_; }
+  const solve::CoulombProblem& problem() const { return problem_; }
+
+ private:
+  /// What moves one contact, in its frame: three rows over some unknowns.
+  struct OnBody {
+    int contact = 0, unknown = 0;  ///< first of as many in z as J has columns
+    Eigen::Matrix3Xd J;
+  };
+  struct OnRod {
+    int contact = 0, rod = 0;
+    Eigen::Matrix3Xd J;  ///< over its strains
+  };
+  /// A rod in its channel. Its friction is the first tangent of a contact of its own, whose normal force is known: what
+  /// presses the rod against the channel. So both kinds are one problem.
+  struct Rubbing {
+    int point = 0, row = 0;
+    Vec3 tangent = Vec3::Zero();
+    double friction = 0.0;
+    double limit(const Eigen::VectorXd& lambda) const {
+      const Vec3 force = lambda.segment<3>(row);
+      return friction * (force - tangent * tangent.dot(force)).norm();
+    }
+  };
+  /// Force and u of a contact at an iterate, in its frame.
+  struct At {
+    Vec3 force, u;
+  };
+  At at(const StepContext& context, const State& iterate, const ContactRoom& room, int contact) const;
+  int contacts() const { return static_cast<int>(touching_ + rubbing_.size()); }
+  void add_rows(const StepContext& context, const State& iterate, const ContactRoom& room, const Reduced& reduced);
+  void respond(const StepContext& context, std::vector<FreeMotion>& free, solve::CoupledFactor& factor,
+               const Eigen::VectorXd& lambda);
+  void push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
+            solve::RightSide& side);
+  void motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const;
+
+  std::size_t touching_ = 0;  ///< contacts; those that rub come after them
+  std::vector<Rubbing> rubbing_;
+  std::vector<OnBody> on_bodies_;
+  std::vector<OnRod> on_rods_;
+  std::vector<linalg::SparseFactor::Rows> on_solids_;  ///< rows of each, all contacts
+  std::vector<std::vector<int>> rows_of_;              ///< which rows those are
+  solve::RightSide side_;
+  solve::CoupledSolution answer_;
+  solve::CoulombProblem problem_;
+  solve::Coulomb coulomb_;
+  solve::CoulombReport report_;
+  Eigen::VectorXd lambda_, old_, own_, rows_;
+};
+
+}  // namespace sinew

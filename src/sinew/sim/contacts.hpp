@@ -1,0 +1,61 @@
+// Contacts: which parts of bodies, solids and rods are near each other in a step, how near, and how they move them.
+//
+// Each contact is a pair of simplices (contact/simplex) that the motion of their bodies carries. Which ones is found
+// once a step; where they are nearest, the normal and the gap follow the iterate.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sinew/sim/step_context.hpp"
+
+namespace sinew {
+
+/// A contact at an iterate: x_a - x_b are its material points, u = (gap, slip along the two tangents) what Signorini's
+/// and Coulomb's laws are about.
+struct Touch {
+  contact::Nearest nearest;
+  Eigen::Matrix3d frame;  ///< normal (from b to a) and two tangents, as columns
+  Vec3 point_a, point_b;  ///< [m] on the two surfaces
+  Vec3 u = Vec3::Zero();  ///< [m] gap, and slip since the start of the step
+};
+
+/// What contacts of a step are evaluated with; memory of the last time.
+struct ContactRoom {
+  std::vector<rod::Configuration> start, now;  ///< of rods that touch something
+  /// Of each solid that touches another or a rod, at the start of the step: boxes around triangles and ridges, and
+  /// outward directions at its nodes.
+  struct Surface {
+    contact::Tree faces, edges;
+    std::vector<contact::Box> boxes;
+    Eigen::Matrix3Xd outward;
+  };
+  std::vector<Surface> surfaces;
+  std::vector<contact::Facing> facings;  ///< of each contact, as it is at the start
+  std::vector<Touch> touches;
+  /// [m] least gap of each at the end of the step: 0, or below while bodies that overlap are moved apart, or above
+  /// where one bounces.
+  std::vector<double> least;
+};
+
+/// Finds what may touch within the step, starting from where the step starts; forces of those that were there are kept.
+void find_contacts(const StepContext& context, State& iterate, ContactRoom& room);
+
+/// Where the contacts of an iterate are.
+void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);
+
+/// Writes where contacts are into an accepted state, and drops those that are open.
+void finish_contacts(const ContactRoom& room, State& next);
+
+/// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,
+/// -1 for what feels the opposite.
+template <class Visit>
+void each_side(const ContactState& contact, const Touch& touch, const Visit& visit) {
+  visit(contact.a, touch.nearest.a, touch.point_a, 1.0);
+  visit(contact.b, touch.nearest.b, touch.point_b, -1.0);
+}
+
+/// How far parts may be apart at the start of a step to be looked at [m].
+double alarm_distance(const StepContext& context);
+
+}  // namespace sinew

@@ -1,0 +1,290 @@
+#include "sinew/solve/coulomb.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace sinew::solve {
+
+using Eigen::Vector2d;
+
+namespace {
+
+/// What turns displacements of a contact into forces: the stiffness that it feels by itself.
+struct Stiffness {
+  double normal = 0.0, tangent = 0.0;  ///< [N/m]
+};
+Stiffness stiffness(const CoulombProblem& problem, int contact) {
+  const auto k = 3 * contact;
+  const auto d = problem.D.diagonal().segment<3>(k);
+  return {1.0 / std::max(d[0], 1e-300), 2.0 / std::max(d[1] + d[2], 1e-300)};
+}
+
+/// The nearest point of a disk.
+Vector2d onto_disk(const Vector2d& t, double radius) {
+  const double r = t.norm();
+  return r <= radius ? t : Vector2d(t * (radius / r));
+}
+
+}  // namespace
+
+double CoulombResidual::largest() const { return std::max({complementarity, cone, dissipation}); }
+
+CoulombResidual residual(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
+  CoulombResidual left;
+  const Eigen::VectorXd u = problem.D * lambda + problem.b;
+  double largest = 0.0;
+  for (int i = 0; i < problem.contacts(); ++i) {
+    const auto k = 3 * i;
+    const Stiffness own = stiffness(problem, i);
+    const double n = lambda[k], mu = problem.mu[i];
+    const Vector2d t = lambda.segment<2>(k + 1);
+    largest = std::max({largest, lambda.segment<3>(k).norm(), own.normal * std::abs(problem.b[k]),
+                        own.tangent * mu * problem.b.segment<2>(k + 1).norm()});
+    left.complementarity = std::max(left.complementarity, std::abs(std::min(n, own.normal * u[k])));
+    const double radius = mu * std::max(n, 0.0);
+    left.cone = std::max(left.cone, t.norm() - radius);
+    const Vector2d off = t - onto_disk(t - own.tangent * u.segment<2>(k + 1), radius);
+    left.dissipation = std::max(left.dissipation, off.norm());
+  }
+  if (!(largest > 0.0)) return left;
+  left.complementarity /= largest;
+  left.cone /= largest;
+  left.dissipation /= largest;
+  return left;
+}
+
+namespace {
+
+/// Slip at one contact: u_n = 0 and lambda = lambda_n (1, -mu d) with u_t = a d, a >= 0, d a direction. The direction
+/// is a root of the cross product of d and u_t over the circle.
+struct Slip {
+  const Eigen::Matrix3d& D;
+  const Eigen::Vector3d& b;
+  double mu;
+
+  struct At {
+    double normal = 0.0;  ///< force
+    double cross = 0.0, along = 0.0;
+    bool possible = false;
+  };
+  At at(double angle) const {
+    const Vector2d d(std::cos(angle), std::sin(angle));
+    const Eigen::Vector3d w(1.0, -mu * d.x(), -mu * d.y());
+    const Eigen::Vector3d Dw = D * w;
+    At own;
+    if (!(Dw[0] > 0.0)) return own;
+    own.normal = -b[0] / Dw[0];
+    const Vector2d slip = own.normal * Dw.tail<2>() + b.tail<2>();
+    own.cross = d.x() * slip.y() - d.y() * slip.x();
+    own.along = d.dot(slip);
+    own.possible = own.normal >= 0.0;
+    return own;
+  }
+};
+
+}  // namespace
+
+bool solve_one(const Eigen::Matrix3d& D, const Eigen::Vector3d& b, double mu, Eigen::Ref<Eigen::Vector3d> lambda) {
+  if (b[0] >= 0.0) {
+    lambda.setZero();
+    return true;
+  }
+  if (mu == 0.0) {
+    lambda = Eigen::Vector3d(-b[0] / D(0, 0), 0.0, 0.0);
+    return lambda.allFinite();
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> factor(D);
+  if (factor.info() == Eigen::Success) {
+    const Eigen::Vector3d stick = factor.solve(-b);
+    const bool holds = (D * stick + b).norm() <= 1e-12 * b.norm();
+    if (holds && stick[0] >= 0.0 && stick.tail<2>().norm() <= mu * stick[0]) {
+      lambda = stick;
+      return true;
+    }
+  }
+  const Slip slip{D, b, mu};
+  constexpr int kAngles = 24;
+  const double step = 2.0 * M_PI / kAngles, first = std::atan2(b[2], b[1]) - 0.5 * step;
+  Slip::At before = slip.at(first);
+  for (int i = 1; i <= kAngles; ++i) {
+    double low = first + (i - 1) * step, high = first + i * step;
+    const Slip::At after = slip.at(high);
+    Slip::At left = before;
+    before = after;
+    if (!left.possible || !after.possible || (left.cross > 0.0) == (after.cross > 0.0)) continue;
+    // Illinois' regula falsi.
+    double f_low = left.cross, f_high = after.cross, angle = low;
+    Slip::At found = left;
+    for (int turn = 0; turn < 100 && high - low > 1e-15 * (1.0 + std::abs(low)); ++turn) {
+      angle = low + (high - low) * std::clamp(f_low / (f_low - f_high), 1e-3, 1.0 - 1e-3);
+      found = slip.at(angle);
+      if (found.cross == 0.0) break;
+      if ((found.cross > 0.0) == (f_low > 0.0)) {
+        low = angle;
+        f_low = found.cross;
+        f_high *= 0.5;
+      } else {
+        high = angle;
+        f_high = found.cross;
+        f_low *= 0.5;
+      }
+    }
+    if (!found.possible || found.along < 0.0) continue;
+    lambda = found.normal * Eigen::Vector3d(1.0, -mu * std::cos(angle), -mu * std::sin(angle));
+    return true;
+  }
+  return false;
+}
+
+void Coulomb::sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda) {
+  for (int i = 0; i < problem.contacts(); ++i) {
+    const auto k = 3 * i;
+    const Eigen::Matrix3d D = problem.D.block<3, 3>(k, k);
+    const Eigen::Vector3d own = lambda.segment<3>(k);
+    const Eigen::Vector3d b = problem.D.middleCols<3>(k).transpose() * lambda + problem.b.segment<3>(k) - D * own;
+    solve_one(D, b, problem.mu[i], lambda.segment<3>(k));
+  }
+}
+
+// Alart's and Curnier's function: F_n = lambda_n - max(0, lambda_n - rho_n u_n), F_t = lambda_t - (lambda_t - rho_t u_t
+// brought to the disk of radius mu max(0, lambda_n - rho_n u_n)). Here u is that of contacts that yield by `yield_` /
+// rho from where their forces were (a proximal point): forces that rigid bodies leave undecided stay near these.
+double Coulomb::evaluate(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
+  u_.noalias() = problem.D * lambda;
+  u_ += problem.b;
+  F_.resize(lambda.size());
+  for (int i = 0; i < problem.contacts(); ++i) {
+    const auto k = 3 * i;
+    u_[k] += yield_ / scale_n_[i] * (lambda[k] - held_[k]);
+    u_.segment<2>(k + 1) += yield_ / scale_t_[i] * (lambda - held_).segment<2>(k + 1);
+    const double pushed = std::max(0.0, lambda[k] - scale_n_[i] * u_[k]);
+    F_[k] = lambda[k] - pushed;
+    const Vector2d t = lambda.segment<2>(k + 1);
+    F_.segment<2>(k + 1) = t - onto_disk(t - scale_t_[i] * u_.segment<2>(k + 1), problem.mu[i] * pushed);
+  }
+  return F_.squaredNorm();
+}
+
+/// A = dF/dlambda and B = dF/du of one contact that is pressed.
+void Coulomb::derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, Eigen::Matrix3d& A,
+                     Eigen::Matrix3d& B) const {
+  const auto k = 3 * contact;
+  const double pushed = lambda[k] - scale_n_[contact] * u_[k], mu = problem.mu[contact], rho = scale_t_[contact];
+  const Vector2d tau = lambda.segment<2>(k + 1) - rho * u_.segment<2>(k + 1);
+  const double radius = mu * pushed, r = tau.norm();
+  A.setZero();
+  B.setZero();
+  B(0, 0) = scale_n_[contact];
+  if (r <= radius) {
+    B(1, 1) = B(2, 2) = rho;
+    return;
+  }
+  const Vector2d d = tau / r;
+  const Eigen::Matrix2d across = (radius / r) * (Eigen::Matrix2d::Identity() - d * d.transpose());
+  A.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() - across;
+  A.bottomLeftCorner<2, 1>() = -mu * d;
+  B.bottomRightCorner<2, 2>() = rho * across;
+  B.bottomLeftCorner<2, 1>() = mu * scale_n_[contact] * d;
+}
+
+bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
+  active_.clear();
+  step_ = -F_;  // of open contacts: their force goes
+  lost_ = step_;
+  for (int i = 0; i < problem.contacts(); ++i) {
+    if (!(lambda[3 * i] - scale_n_[i] * u_[3 * i] > 0.0)) continue;
+    active_.push_back(i);
+    lost_.segment<3>(3 * i).setZero();
+  }
+  if (active_.empty()) return true;
+  const auto n = static_cast<Eigen::Index>(3 * active_.size());
+  J_.resize(n, n);
+  right_.resize(n);
+  const Eigen::VectorXd moved = problem.D * lost_;
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const int i = active_[a];
+    const auto k = 3 * i, row = 3 * static_cast<int>(a);
+    Eigen::Matrix3d A, B;
+    derive(problem, lambda, i, A, B);
+    for (std::size_t c = 0; c < active_.size(); ++c)
+      J_.block<3, 3>(row, 3 * static_cast<int>(c)).noalias() = B * problem.D.block<3, 3>(k, 3 * active_[c]);
+    const Eigen::Vector3d yields(yield_ / scale_n_[i], yield_ / scale_t_[i], yield_ / scale_t_[i]);
+    J_.block<3, 3>(row, row) += A + B * yields.asDiagonal();
+    right_.segment<3>(row) = -F_.segment<3>(k) - B * moved.segment<3>(k);
+  }
+  const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> lu(J_);
+  right_ = lu.solve(right_).eval();
+  if (!right_.allFinite()) return false;
+  for (std::size_t a = 0; a < active_.size(); ++a)
+    step_.segment<3>(3 * active_[a]) = right_.segment<3>(static_cast<Eigen::Index>(3 * a));
+  return true;
+}
+
+bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps) {
+  constexpr int kMost = 40, kHalvings = 8;
+  held_ = lambda;
+  double merit = evaluate(problem, lambda);
+  int worse = 0;
+  for (int turn = 0; turn < kMost; ++turn) {
+    const double largest = std::max(lambda.lpNorm<Eigen::Infinity>(), 1e-300);
+    if (F_.lpNorm<Eigen::Infinity>() <= 0.1 * tolerance * largest) {
+      if (residual(problem, lambda).largest() <= tolerance) return true;
+      held_ = lambda;
+      merit = evaluate(problem, lambda);
+    }
+    ++steps;
+    if (!step(problem, lambda)) return false;
+    double part = 1.0;
+    trial_ = lambda + step_;
+    double next = evaluate(problem, trial_);
+    for (int halving = 0; halving < kHalvings && !(next < merit); ++halving) {
+      part *= 0.5;
+      trial_ = lambda + part * step_;
+      next = evaluate(problem, trial_);
+    }
+    if (!(next < merit) && ++worse > 3) return false;
+    lambda = trial_;
+    merit = next;
+  }
+  return false;
+}
+
+CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda) {
+  CoulombReport report;
+  const int n = problem.contacts();
+  scale_n_.resize(n);
+  scale_t_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const Stiffness own = stiffness(problem, i);
+    scale_n_[i] = own.normal;
+    scale_t_[i] = own.tangent;
+  }
+  best_ = lambda;
+  report.residual = residual(problem, lambda);
+  const auto keep = [&] {
+    const CoulombResidual now = residual(problem, lambda);
+    if (now.largest() < report.residual.largest()) {
+      report.residual = now;
+      best_ = lambda;
+    }
+    return report.residual.largest() <= tolerance;
+  };
+  constexpr int kTurns = 8;
+  int sweeps = 4;
+  yield_ = 1e-3;
+  report.solved = report.residual.largest() <= tolerance;
+  for (int turn = 0; turn < kTurns && !report.solved; ++turn, sweeps *= 2) {
+    lambda = best_;
+    for (int i = 0; i < sweeps; ++i, ++report.sweeps) sweep(problem, lambda);
+    report.solved = keep();
+    if (report.solved) break;
+    newton(problem, tolerance, lambda, report.newton);
+    report.solved = keep();
+    yield_ *= 0.1;
+  }
+  lambda = best_;
+  return report;
+}
+
+}  // namespace sinew::solve

@@ -1,0 +1,65 @@
+// Signorini's and Coulomb's laws at many contacts at once: what is left of a step once bodies and bilateral rows are
+// eliminated.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace sinew::solve {
+
+/// Contacts i = 0 .. n - 1 with three rows each: along the normal, and two tangents. With forces lambda, u = D lambda +
+/// b is how the bodies move relative to each other by the end of the step [m]: u_n what is left of the gap, u_t the
+/// slip. Wanted is
+///     0 <= lambda_n,  0 <= u_n,  lambda_n u_n = 0                                    (Signorini)
+///     |lambda_t| <= mu lambda_n,  lambda_t = -mu lambda_n u_t / |u_t| where u_t != 0   (Coulomb)
+struct CoulombProblem {
+  Eigen::MatrixXd D;   ///< [m/N] 3n x 3n, symmetric, positive semidefinite
+  Eigen::VectorXd b;   ///< [m] 3n: u without forces at the contacts
+  Eigen::VectorXd mu;  ///< n, >= 0
+  int contacts() const { return static_cast<int>(mu.size()); }
+};
+
+/// How far forces are from solving a problem. Displacements u are told as the forces that would take them away at their
+/// own contact, u / D_ii, and all three are relative to the largest force there is, b / D_ii included.
+struct CoulombResidual {
+  double complementarity = 0.0;  ///< of lambda_n and u_n: |min(lambda_n, u_n)|
+  double cone = 0.0;             ///< |lambda_t| beyond mu lambda_n
+  double dissipation = 0.0;      ///< of maximum dissipation: lambda_t off its place on the disk of radius mu lambda_n
+  double largest() const;
+};
+CoulombResidual residual(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
+
+/// The force at a single contact, with D (3 x 3) and b: open, stick or slip, exactly. False where none of them is
+/// (friction so high that it jams); lambda is then unchanged.
+bool solve_one(const Eigen::Matrix3d& D, const Eigen::Vector3d& b, double mu, Eigen::Ref<Eigen::Vector3d> lambda);
+
+struct CoulombReport {
+  bool solved = false;  ///< to the tolerance
+  int sweeps = 0;       ///< of block Gauss-Seidel
+  int newton = 0;       ///< steps of semi-smooth Newton
+  CoulombResidual residual;
+};
+
+/// Sweeps of block Gauss-Seidel find out what is open, sticks or slips, semi-smooth Newton on all contacts at once
+/// makes it exact; by turns until the tolerance is met. Keeps its memory.
+class Coulomb {
+ public:
+  /// `lambda` is where it starts (3n, the forces of the last step or zero) and the solution, or the best that was
+  /// found.
+  CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda);
+
+ private:
+  void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda);
+  double evaluate(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
+  void derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, Eigen::Matrix3d& A,
+              Eigen::Matrix3d& B) const;
+  bool step(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
+  bool newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps);
+
+  double yield_ = 0.0;
+  Eigen::VectorXd u_, F_, step_, trial_, best_, held_, lost_, right_, scale_n_, scale_t_;
+  Eigen::MatrixXd J_;
+  std::vector<int> active_;
+};
+
+}  // namespace sinew::solve

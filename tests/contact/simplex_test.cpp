@@ -1,0 +1,151 @@
+#include "sinew/contact/simplex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+namespace sinew::contact {
+namespace {
+
+class Random {
+ public:
+  Vec3 point() { return {next_(), next_(), next_()}; }
+  double number() { return next_(); }
+
+ private:
+  struct Next {
+    std::mt19937 engine{11};
+    std::uniform_real_distribution<double> range{-1.0, 1.0};
+    double operator()() { return range(engine); }
+  } next_;
+};
+
+Simplex simplex(Simplex::Kind kind, Random& random, double radius) {
+  Simplex own;
+  own.kind = kind;
+  for (Vec3& x : own.x) x = random.point();
+  own.normal = Vec3::Zero();
+  if (kind == Simplex::Kind::plane) own.normal = random.point().normalized();
+  own.radius = radius;
+  return own;
+}
+
+Vec3 at(const Simplex& own, const std::array<double, 3>& w) {
+  Vec3 p = Vec3::Zero();
+  for (int i = 0; i < own.corners(); ++i) p += w[static_cast<std::size_t>(i)] * own.x[static_cast<std::size_t>(i)];
+  return p;
+}
+
+/// The least distance over a fine grid of weights.
+double least_distance(const Simplex& a, const Simplex& b, int n) {
+  const auto weights = [n](const Simplex& own) {
+    std::vector<std::array<double, 3>> all;
+    for (int i = 0; i <= (own.corners() > 1 ? n : 0); ++i) {
+      for (int j = 0; j <= (own.corners() > 2 ? n - i : 0); ++j) {
+        const double s = static_cast<double>(i) / n, t = static_cast<double>(j) / n;
+        all.push_back({1.0 - s - t, s, t});
+      }
+    }
+    return all;
+  };
+  double least = INFINITY;
+  for (const auto& wa : weights(a)) {
+    for (const auto& wb : weights(b)) least = std::min(least, (at(a, wa) - at(b, wb)).norm());
+  }
+  return least;
+}
+
+using enum Simplex::Kind;
+
+TEST(Simplex, NearestPointsAreNearest) {
+  Random random;
+  for (int trial = 0; trial < 200; ++trial) {
+    for (const Simplex::Kind kind : {point, segment, triangle}) {
+      const bool edges = trial % 2 == 1 && kind == segment;
+      const Simplex a = simplex(edges ? segment : point, random, 0.0), b = simplex(kind, random, 0.0);
+      const Nearest found = nearest(a, b);
+      const Vec3 d = at(a, found.a) - at(b, found.b);
+      const int n = edges ? 120 : 200;
+      EXPECT_LE(d.norm(), least_distance(a, b, n) + 1e-12);
+      EXPECT_GE(d.norm(), least_distance(a, b, n) - 4.0 / n);
+      EXPECT_NEAR(std::abs(found.gap), d.norm(), 1e-12);
+      EXPECT_NEAR(found.normal.norm(), 1.0, 1e-12);
+      EXPECT_NEAR(found.normal.dot(d), found.gap, 1e-12);
+    }
+  }
+}
+
+/// d gap = normal . (sum of a dx_a - sum of b dx_b), for what is not a plane.
+TEST(Simplex, GapChangesAsTheNormalSays) {
+  Random random;
+  constexpr double e = 1e-6;
+  for (int trial = 0; trial < 100; ++trial) {
+    for (const Simplex::Kind kind : {point, segment, triangle, plane}) {
+      const bool edges = trial % 2 == 1 && kind == segment;
+      Simplex a = simplex(edges ? segment : point, random, 0.1), b = simplex(kind, random, 0.05);
+      if (edges) b.normal = random.point();
+      const Nearest here = nearest(a, b);
+      Vec3 change = Vec3::Zero();
+      Simplex ahead_a = a, ahead_b = b, behind_a = a, behind_b = b;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(a.corners()); ++i) {
+        const Vec3 dx = random.point();
+        change += here.a[i] * dx;
+        ahead_a.x[i] += e * dx;
+        behind_a.x[i] -= e * dx;
+      }
+      for (std::size_t i = 0; i < static_cast<std::size_t>(b.corners()); ++i) {
+        const Vec3 dx = random.point();
+        change -= here.b[i] * dx;
+        ahead_b.x[i] += e * dx;
+        behind_b.x[i] -= e * dx;
+      }
+      const Nearest ahead = nearest(ahead_a, ahead_b), behind = nearest(behind_a, behind_b);
+      if ((ahead.normal - behind.normal).norm() > 0.01) continue;  // the nearest part changes there
+      EXPECT_NEAR((ahead.gap - behind.gap) / (2 * e), here.normal.dot(change), 1e-4);
+    }
+  }
+}
+
+TEST(Simplex, NormalOfAFaceStaysWhereAPointPassesThroughIt) {
+  Simplex face;
+  face.kind = triangle;
+  face.x = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  for (const double z : {0.1, 1e-9, 0.0, -1e-9, -0.1}) {
+    Simplex p;
+    p.x[0] = Vec3(0.2, 0.3, z);
+    const Nearest found = nearest(p, face);
+    EXPECT_EQ(found.normal, Vec3::UnitZ());
+    EXPECT_EQ(found.gap, z);
+  }
+}
+
+TEST(Simplex, ParallelSegmentsMeetInTheMiddleOfWhatLiesSideBySide) {
+  Simplex a, b;
+  a.kind = b.kind = segment;
+  a.normal = b.normal = Vec3::Zero();
+  a.x = {Vec3(0, 0, 1), Vec3(4, 0, 1), Vec3::Zero()};
+  b.x = {Vec3(2, 0, 0), Vec3(8, 0, 0), Vec3::Zero()};
+  const Nearest found = nearest(a, b);
+  EXPECT_NEAR(found.a[1], 0.75, 1e-12);
+  EXPECT_NEAR(at(b, found.b).x(), 3.0, 1e-12);
+  EXPECT_NEAR(found.gap, 1.0, 1e-12);
+}
+
+TEST(Simplex, ThicknessIsTakenOff) {
+  Simplex a, b;
+  a.x[0] = Vec3(0, 0, 3);
+  b.x[0] = Vec3::Zero();
+  a.radius = 1.0;
+  b.radius = 0.5;
+  EXPECT_NEAR(nearest(a, b).gap, 1.5, 1e-15);
+}
+
+TEST(Simplex, OtherPairsAreRefused) {
+  Random random;
+  EXPECT_THROW(nearest(simplex(triangle, random, 0), simplex(triangle, random, 0)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sinew::contact

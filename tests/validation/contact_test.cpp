@@ -1,0 +1,199 @@
+// Exact cases of contact: slopes, stacks, bounces, tipping.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/signals.hpp"
+#include "support/scenes.hpp"
+
+namespace sinew {
+namespace {
+
+using test::mm;
+
+solid::Mesh no_mesh(const std::filesystem::path&) { return {}; }
+
+constexpr double kGravity = 9.81;
+
+RigidBody box_of(double edge, double mass, const Vec3& at) {
+  RigidBody body;
+  body.shape = BoxShape{Vec3::Constant(edge)};
+  body.mass = mass;
+  body.pose.translate = at;
+  return body;
+}
+
+Scene on_floor(double h, double duration, double friction) {
+  Scene scene;
+  scene.time = {h, duration};
+  scene.gravity = Vec3(0, 0, -kGravity);
+  scene.contact.friction = friction;
+  Obstacle floor;
+  floor.shape = PlaneShape{Vec3::Zero(), Vec3::UnitZ()};
+  scene.obstacles.emplace_back("floor", floor);
+  return scene;
+}
+
+/// Runs to the end; the last state.
+State end_of(const Model& model, double* most_energy = nullptr) {
+  State last = initial_state(model);
+  double energy = energy_balance(model, last).total();
+  StepReport failure;
+  const RunEnd end = run(
+      model, last,
+      [&](const State& state, const StepReport&) {
+        const double now = energy_balance(model, state).total();
+        if (most_energy) *most_energy = std::max(*most_energy, now - energy);
+        energy = now;
+        last = state;
+        return true;
+      },
+      &failure);
+  EXPECT_EQ(end, RunEnd::done) << to_string(failure.status) << " " << failure.detail;
+  return last;
+}
+
+TEST(Contact, BlockOnASlopeSticksOrSlidesWithTheRightAcceleration) {
+  const double angle = 25.0 * std::numbers::pi / 180.0, limit = std::tan(angle);
+  for (const double mu : {0.98 * limit, 1.02 * limit, 0.2, 0.0}) {
+    Scene scene = on_floor(0.005, 0.5, mu);
+    scene.gravity = kGravity * Vec3(std::sin(angle), 0, -std::cos(angle));
+    scene.bodies.emplace_back("block", box_of(50 * mm, 0.1, Vec3(0, 0, 25 * mm)));
+    const Model model = build(scene, no_mesh);
+    double gained = 0.0;
+    const State end = end_of(model, &gained);
+    const double t = end.time, a = std::max(0.0, kGravity * (std::sin(angle) - mu * std::cos(angle)));
+    // Backward Euler's sum: a h^2 n (n + 1) / 2.
+    EXPECT_NEAR(end.bodies[0].p.x(), 0.5 * a * t * (t + 0.005), 1e-6 * (1.0 + a)) << "mu " << mu;
+    EXPECT_NEAR(end.bodies[0].p.z(), 25 * mm, 1e-9);
+    EXPECT_NEAR(end.bodies[0].v.x(), a * t, 1e-6 * (1.0 + a));
+    EXPECT_LE(gained, 1e-12);
+    EXPECT_EQ(end.contacts.size(), 4U);
+    Vec3 force = Vec3::Zero();
+    for (const ContactState& own : end.contacts) force += own.force;
+    EXPECT_NEAR(force.z(), 0.1 * kGravity * std::cos(angle), 1e-8);
+  }
+}
+
+TEST(Contact, StackedBoxesStay) {
+  Scene scene = on_floor(0.01, 1.0, 0.5);
+  for (int i = 0; i < 5; ++i)
+    scene.bodies.emplace_back("box" + std::to_string(i), box_of(50 * mm, 0.1, Vec3(0, 0, (25 + 50 * i) * mm)));
+  const Model model = build(scene, no_mesh);
+  double gained = 0.0;
+  const State end = end_of(model, &gained);
+  for (int i = 0; i < 5; ++i) EXPECT_LT((end.bodies[i].p - model.bodies[i].start.p).norm(), 1e-6) << i;
+  EXPECT_LE(gained, 1e-12);
+}
+
+TEST(Contact, HeavyOnLightHolds) {
+  Scene scene = on_floor(0.01, 0.5, 0.5);
+  scene.bodies.emplace_back("light", box_of(50 * mm, 0.001, Vec3(0, 0, 25 * mm)));
+  scene.bodies.emplace_back("heavy", box_of(50 * mm, 10.0, Vec3(0, 0, 75 * mm)));
+  const Model model = build(scene, no_mesh);
+  const State end = end_of(model);
+  for (int i = 0; i < 2; ++i) EXPECT_LT((end.bodies[i].p - model.bodies[i].start.p).norm(), 1e-6) << i;
+}
+
+TEST(Contact, BounceReachesRestitutionSquared) {
+  for (const double h : {1e-3, 5e-4}) {
+    Scene scene = on_floor(h, 1.2, 0.0);
+    scene.contact.restitution = 0.7;
+    RigidBody ball;
+    ball.shape = SphereShape{20 * mm};
+    ball.mass = 0.05;
+    ball.pose.translate = Vec3(0, 0, 520 * mm);
+    scene.bodies.emplace_back("ball", ball);
+    const Model model = build(scene, no_mesh);
+    double highest = 0.0, energy = energy_balance(model, initial_state(model)).total();
+    bool hit = false;
+    run(model, initial_state(model), [&](const State& state, const StepReport&) {
+      const double now = energy_balance(model, state).total();
+      EXPECT_LE(now, energy + 1e-12);
+      energy = now;
+      if (state.bodies[0].v.z() > 0.0) hit = true;
+      if (hit && state.time < 0.9) highest = std::max(highest, state.bodies[0].p.z() - 20 * mm);
+      return true;
+    });
+    EXPECT_NEAR(highest, 0.49 * 0.5, 10.0 * h * 0.5);
+  }
+}
+
+TEST(Contact, TallBoxTipsBeyondItsDiagonal) {
+  // Width over height 1/3: it tips where the slope is steeper.
+  for (const double slope : {0.32, 0.35}) {
+    Scene scene = on_floor(0.005, 1.0, 2.0);
+    const double angle = std::atan(slope);
+    scene.gravity = kGravity * Vec3(std::sin(angle), 0, -std::cos(angle));
+    RigidBody box = box_of(1.0, 0.1, Vec3(0, 0, 75 * mm));
+    box.shape = BoxShape{Vec3(50 * mm, 50 * mm, 150 * mm)};
+    scene.bodies.emplace_back("box", box);
+    const Model model = build(scene, no_mesh);
+    const State end = end_of(model);
+    const double tilt = std::acos(std::clamp(end.bodies[0].R(2, 2), -1.0, 1.0));
+    if (slope < 1.0 / 3.0) {
+      EXPECT_LT(tilt, 1e-6);
+    } else {
+      EXPECT_GT(tilt, 0.5);
+    }
+  }
+}
+
+TEST(Contact, FastBallStopsAtAThinPlate) {
+  Scene scene = on_floor(0.01, 0.2, 0.5);
+  Obstacle plate;
+  plate.shape = BoxShape{Vec3(200 * mm, 200 * mm, 2 * mm)};
+  plate.pose.translate = Vec3(0, 0, 300 * mm);
+  scene.obstacles.emplace_back("plate", plate);
+  for (const double x : {-50 * mm, 50 * mm}) {
+    RigidBody body = box_of(10 * mm, 0.01, Vec3(x, 0, 450 * mm));
+    if (x > 0.0) body.shape = SphereShape{5 * mm};
+    body.velocity = Vec3(0, 0, -10.0);  // 100 mm in a step
+    scene.bodies.emplace_back(x > 0.0 ? "ball" : "box", body);
+  }
+  const Model model = build(scene, no_mesh);
+  const State end = end_of(model);
+  for (const rigid::Motion& own : end.bodies) EXPECT_NEAR(own.p.z(), 306 * mm, 1e-6);
+}
+
+TEST(Contact, WhatStartsInTheGroundIsLiftedGently) {
+  Scene scene = on_floor(0.005, 1.0, 0.5);
+  const double depth = 5 * mm;
+  scene.bodies.emplace_back("box", box_of(50 * mm, 0.1, Vec3(0, 0, 25 * mm - depth)));
+  const Model model = build(scene, no_mesh);
+  double fastest = 0.0, highest = -INFINITY;
+  State last;
+  run(model, initial_state(model), [&](const State& state, const StepReport&) {
+    fastest = std::max(fastest, state.bodies[0].v.norm());
+    highest = std::max(highest, state.bodies[0].p.z());
+    last = state;
+    return true;
+  });
+  EXPECT_LT(fastest, std::sqrt(2.0 * kGravity * depth));
+  EXPECT_LT(highest, 25 * mm + 1e-4);
+  EXPECT_NEAR(last.bodies[0].p.z(), 25 * mm, 1e-5);
+  EXPECT_LT(last.bodies[0].v.norm(), 1e-3);
+}
+
+TEST(Contact, SolidBlockRestsOnThePlane) {
+  Scene scene = on_floor(0.01, 0.5, 0.5);
+  Solid block;
+  block.mesh = "block";
+  block.material.law = solid::corotational(100e3, 0.3);
+  block.density = 1000.0;
+  block.rayleigh = {5.0, 0.01};
+  block.pose.translate = Vec3(0, 0, 1 * mm);
+  scene.solids.emplace_back("block", block);
+  const Model model =
+      build(scene, [](const std::filesystem::path&) { return test::block_mesh(3, 3, 3, Vec3::Constant(60 * mm)); });
+  const State end = end_of(model);
+  EXPECT_GT(end.solids[0].x.row(2).minCoeff(), -1e-9);
+  Vec3 force = Vec3::Zero();
+  for (const ContactState& own : end.contacts) force += own.force;
+  EXPECT_NEAR(force.z(), 1000.0 * std::pow(60 * mm, 3) * kGravity, 2e-2);
+}
+
+}  // namespace
+}  // namespace sinew
