@@ -41,13 +41,13 @@ struct BlockPlace {
   std::uint32_t turned : 1 = 0;
 };
 
-/// A volume, where it is attached, and how its matrix is factored.
 /// Two nodes of a surface's edge, and the third one of each of the triangles that meet in it (the same one where there
 /// is only one triangle).
 struct Ridge {
   std::array<int, 2> ends, sides;
 };
 
+/// A volume, where it is attached, and how its matrix is factored.
 struct SolidModel {
   std::string name;
   solid::Body body;
