@@ -3,6 +3,7 @@
 #include "sinew/commands.hpp"
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/loaded_scene.hpp"
+#include "sinew/sim/contacts.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/solid/mesh_order.hpp"
 #include "sinew/solid/mesh_summary.hpp"
@@ -82,6 +83,18 @@ void print_coupling(const Model& model, std::size_t number) {
   std::visit([&](const auto& own) { print(own, model.couplings[number]); }, model.scene.couplings[number]);
 }
 
+void print_contact(const Model& model) {
+  for (const BodyModel& body : model.bodies) {
+    const Vec3 size = 2e3 * contact::reach(body.shape, Eigen::Matrix3d::Identity());
+    fmt::print("body {}: {:.4g} x {:.4g} x {:.4g} mm, {:.4g} g\n", body.name, size.x(), size.y(), size.z(),
+               1e3 * body.body.mass);
+  }
+  for (const PairModel& pair : model.pairs) {
+    fmt::print("contact of {} and {}: friction {:.4g}", name_of(model, pair.a), name_of(model, pair.b), pair.friction);
+    fmt::print("{}\n", pair.restitution > 0.0 ? fmt::format(", restitution {:.4g}", pair.restitution) : "");
+  }
+}
+
 }  // namespace
 
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
@@ -117,6 +130,7 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
                names[static_cast<int>(actuator.driven)],
                std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)" : "");
   }
+  print_contact(model);
   for (const std::string& warning : model.warnings) fmt::print("warning: {}\n", warning);
   int unknowns = model.unknowns;
   for (const RodModel& rod : model.rods) unknowns += rod.rod.strain_coordinates();

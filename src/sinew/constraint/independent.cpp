@@ -2,9 +2,10 @@
 
 namespace sinew::constraint {
 
-std::vector<int> independent_rows(Eigen::MatrixXd gram, double tolerance, int forced) {
+std::vector<int> independent_rows(Eigen::MatrixXd gram, double tolerance, int forced, const Eigen::VectorXd& lengths) {
   const Eigen::Index n = gram.rows();
-  const Eigen::VectorXd length2 = gram.diagonal();
+  const Eigen::VectorXd length2 =
+      lengths.size() > 0 ? Eigen::VectorXd(lengths.cwiseAbs2()) : Eigen::VectorXd(gram.diagonal());
   const auto says_something = [&](Eigen::Index i) { return gram(i, i) > tolerance * tolerance * length2[i]; };
   std::vector<bool> used(static_cast<std::size_t>(n), false);
   std::vector<int> kept;

@@ -29,6 +29,8 @@ void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& poi
   }
 }
 
+constexpr int kSides = 48;  ///< of the prisms that stand for cylinders
+
 bool round(const Shape& shape) { return std::holds_alternative<Ball>(shape) || std::holds_alternative<Capsule>(shape); }
 
 /// One shape while it meets another one.
@@ -60,15 +62,7 @@ class Meet {
     points({point_at(-end, capsule.radius), point_at(end, capsule.radius)}, at, b, there, swapped);
     const Simplex axis = segment_at(-end, end, Vec3::Zero(), capsule.radius);
     if (const Convex* convex = std::get_if<Convex>(&b)) {
-      const Polyhedron& own = convex->surface;
-      for (std::size_t e = 0; e < own.edges.size(); ++e) {
-        const Vec3 outward = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
-        const Simplex edge = segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], outward, 0.0);
-        const Nearest there_is = nearest(moved(at, axis), moved(there, edge));
-        // Ends are the business of the points.
-        if (there_is.a[1] > 0.0 && there_is.a[1] < 1.0)
-          add(axis, at, edge, there, 1000 + static_cast<std::uint32_t>(e), swapped);
-      }
+      edges(axis, at, convex->surface, there, swapped, [](std::size_t) { return true; });
     } else if (const Capsule* other = std::get_if<Capsule>(&b)) {
       const Vec3 tip(0.0, 0.0, 0.5 * other->length);
       add(axis, at, segment_at(-tip, tip, Vec3::Zero(), other->radius), there, 1, swapped);
@@ -78,12 +72,37 @@ class Meet {
       const Simplex side = segment_at(-tip, tip, Vec3::Zero(), barrel->radius);
       const Nearest there_is = nearest(moved(at, axis), moved(there, side));
       if (there_is.b[1] > 0.0 && there_is.b[1] < 1.0) add(axis, at, side, there, 1, swapped);
+      const Polyhedron sides = prism(barrel->radius, barrel->length, kSides);
+      edges(axis, at, sides, there, swapped, [&](std::size_t e) { return sides.sides[e][0] < 2; });  // the rims
     }
   }
 
   void polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, const Pose& there);
 
  private:
+  /// The axis of a capsule across some edges of a polyhedron. Of edges that it has passed, as of those on the far side,
+  /// only the least overlaps count.
+  template <class Wanted>
+  void edges(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped,
+             const Wanted& wanted) {
+    std::vector<std::pair<std::uint32_t, double>> crossed;
+    double least = -INFINITY;
+    for (std::size_t e = 0; e < own.edges.size(); ++e) {
+      if (!wanted(e)) continue;
+      const Nearest found = nearest(moved(at, axis), moved(there, edge_of(own, e)));
+      if (!(found.a[1] > 0.0 && found.a[1] < 1.0)) continue;  // ends are the business of the points
+      crossed.emplace_back(static_cast<std::uint32_t>(e), found.gap);
+      least = std::max(least, found.gap);
+    }
+    for (const auto& [e, gap] : crossed) {
+      if (gap >= std::min(least, 0.0) - alarm_) add(axis, at, edge_of(own, e), there, 1000 + e, swapped);
+    }
+  }
+  static Simplex edge_of(const Polyhedron& own, std::size_t e) {
+    const Vec3 outward = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
+    return segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], outward, 0.0);
+  }
+
   double alarm_;
   std::vector<Meeting>& found_;
 };
@@ -217,7 +236,8 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
 void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double alarm,
           std::vector<Meeting>& found) {
   Meet meeting(alarm, found);
-  if (round(first)) return meeting.round_shape(first, at, second, there, false);
+  const auto ball = [](const Shape& shape) { return std::holds_alternative<Ball>(shape); };
+  if (round(first) && (ball(first) || !ball(second))) return meeting.round_shape(first, at, second, there, false);
   if (round(second)) return meeting.round_shape(second, there, first, at, true);
   if (std::holds_alternative<HalfSpace>(first) || std::holds_alternative<HalfSpace>(second)) {
     const bool swapped = std::holds_alternative<HalfSpace>(first);
@@ -232,7 +252,8 @@ void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& t
     return meeting.points(points, of_body, space, of_space, swapped);
   }
   const auto polyhedron = [](const Shape& shape) {
-    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) return prism(cylinder->radius, cylinder->length, 48);
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape))
+      return prism(cylinder->radius, cylinder->length, kSides);
     return std::get<Convex>(shape).surface;
   };
   meeting.polyhedra(polyhedron(first), at, polyhedron(second), there);

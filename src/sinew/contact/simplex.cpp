@@ -142,7 +142,7 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
           found.gap = n.dot(d);
         } else {
           along_distance(a, b, n, found);
-          if (d.dot(n) < 0.0) {
+          if (d.dot(b.normal.isZero() ? n : b.normal) < 0.0) {
             found.normal = -found.normal;
             found.gap = -found.gap;
           }
@@ -184,7 +184,7 @@ Facing facing(const Simplex& a, const Simplex& b) {
   if (b.kind == plane) return {face, found.normal};
   if (b.kind == triangle) {
     const double edge = std::max((b.x[1] - b.x[0]).norm(), (b.x[2] - b.x[0]).norm());
-    if (inside(found.b, 3) || (thin && std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
+    if (thin && (inside(found.b, 3) || std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
   }
   if (a.kind == segment && b.kind == segment && inside(found.a, 2) && inside(found.b, 2) && !b.normal.isZero() &&
       !across(a, b).isZero())

@@ -13,9 +13,11 @@ using Vec3 = Eigen::Vector3d;
 struct Simplex {
   enum class Kind { point, segment, triangle, plane };
   Kind kind = Kind::point;
-  std::array<Vec3, 3> x;       ///< [m] as many as the kind has: 1, 2, 3, 1
-  Vec3 normal = Vec3::Zero();  ///< out of a half-space; of a segment what stands for it where the two cross
-  double radius = 0.0;         ///< [m]
+  std::array<Vec3, 3> x;  ///< [m] as many as the kind has: 1, 2, 3, 1
+  /// Out of a half-space; of a segment what stands for it where the two cross; of a triangle what stands for it past
+  /// its rim, where it is that of a surface (zero: the triangle's own).
+  Vec3 normal = Vec3::Zero();
+  double radius = 0.0;  ///< [m]
   int corners() const { return kind == Kind::triangle ? 3 : kind == Kind::segment ? 2 : 1; }
 };
 
@@ -37,8 +39,9 @@ struct Nearest {
 Nearest nearest(const Simplex& a, const Simplex& b);
 
 /// How two simplices face each other, chosen once and kept while they move a little, so that the normal is smooth: by
-/// the face of b, across both edges, along the line between their nearest points (thick ones, which stay apart), or
-/// along a fixed direction (thin ones beside a face or past an end, where that line turns about as they touch).
+/// the face of b, across both edges, along the line between their nearest points (thick ones, which stay apart, also
+/// from a face), or along a fixed direction (thin ones beside a face or past an end, where that line turns about as
+/// they touch).
 struct Facing {
   enum class Kind { face, crossing, apart, fixed };
   Kind kind = Kind::fixed;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/contacts.hpp"
 
 namespace sinew::building {
 
@@ -45,20 +46,6 @@ struct MakeShape {
     return contact::HalfSpace{};
   }
 };
-
-std::string name_of(const Model& model, const Collider& own) {
-  switch (own.kind) {
-    case Kind::obstacle:
-      return model.obstacles[own.number].name;
-    case Kind::body:
-      return model.bodies[own.number].name;
-    case Kind::solid:
-      return model.solids[own.number].name;
-    case Kind::rod:
-      break;
-  }
-  return model.rods[own.number].name;
-}
 
 std::vector<Collider> colliders(const Model& model) {
   std::vector<Collider> all;

@@ -53,24 +53,37 @@ Eigen::MatrixXd weight_gram(const SolidModel& solid, const std::vector<PointMode
   return weights * weights.transpose();
 }
 
-/// Gram matrix of points that the body holds still: what the rod's own coordinates can do there, across it, and along
-/// it at an anchor.
-Eigen::MatrixXd reach_gram(const RodModel& rod, const std::vector<PointModel>& points) {
+/// Of points that the body holds still: what the rod's own coordinates can do there, across it, and along it at an
+/// anchor.
+struct Reach {
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd
+      lengths;  ///< of each, what sections since the point before can do: those nearer the base have long arms
+};
+Reach reach_of(const RodModel& rod, const std::vector<PointModel>& points) {
   const auto shape = start_shape(rod);
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Reach reach{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
   std::vector<Eigen::MatrixXd> rows;
   for (const PointModel& point : points) {
     const double s = std::min(point.abscissa, rod.rod.length());
+    double before = 0.0;
+    for (const PointModel& other : points) {
+      if (other.abscissa < point.abscissa) before = std::max(before, other.abscissa);
+    }
     Eigen::MatrixXd J = rod::position_jacobian(shape, s);
     J.leftCols(rod.rod.base_coordinates()).setZero();
     rows.emplace_back(rod::curve_point(shape, s).R.transpose() * J);
     if (!point.fixed) rows.back().row(0).setZero();
+    int first = 0;
+    while (first + 1 < rod.rod.count() && rod.rod.sections[first].end <= before) ++first;
+    const Eigen::Index columns = rod.rod.base_coordinates() + rod.rod.first[first];
+    reach.lengths[static_cast<Eigen::Index>(rows.size()) - 1] = rows.back().rightCols(J.cols() - columns).norm();
   }
-  const auto n = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixXd gram(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) gram(i, j) = (rows[i].array() * rows[j].array()).sum();
+    for (Eigen::Index j = 0; j < n; ++j) reach.gram(i, j) = (rows[i].array() * rows[j].array()).sum();
   }
-  return gram;
+  return reach;
 }
 
 /// Keeps the points that say something new: none that touches no free unknown, and of those that a volume's elements
@@ -104,8 +117,8 @@ std::vector<PointModel> independent_points(Model& model, const std::vector<Point
     if (held && line.cable >= 0) {  // its points are free to be anywhere
       for (int i = 0; i < static_cast<int>(points.size()); ++i) numbers.push_back(i);
     } else {
-      numbers = constraint::independent_rows(
-          held ? reach_gram(model.rods[line.rod], points) : weight_gram(solid, points), kNewPart, forced);
+      const Reach reach = held ? reach_of(model.rods[line.rod], points) : Reach{weight_gram(solid, points), {}};
+      numbers = constraint::independent_rows(reach.gram, kNewPart, forced, reach.lengths);
       std::sort(numbers.begin(), numbers.end());
     }
     for (int i = earlier; i < static_cast<int>(points.size()); ++i) {

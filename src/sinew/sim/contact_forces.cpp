@@ -23,57 +23,55 @@ void ContactForces::add_rows(const StepContext& context, const State& iterate, c
   on_solids_.resize(model.solids.size());
   rows_of_.assign(model.solids.size(), {});
   std::vector<std::vector<Eigen::Triplet<double>>> entries(model.solids.size());
-  for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
-    const Touch& touch = room.touches[i];
-    const auto contact = static_cast<int>(i);
-    each_side(iterate.contacts[i], touch,
-              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
-                const Eigen::Matrix3d rows = sign * touch.frame.transpose();
-                switch (side.on.kind) {
-                  case Kind::obstacle:
-                    break;
-                  case Kind::body: {
-                    OnBody own{contact, model.bodies[side.on.number].unknown, Eigen::Matrix3Xd(3, 6)};
-                    own.J << rows, -rows * lie::hat(at - iterate.bodies[side.on.number].p);
-                    on_bodies_.push_back(own);
-                    break;
-                  }
-                  case Kind::solid: {
-                    const solid::Body& body = model.solids[side.on.number].body;
-                    std::vector<int>& known = rows_of_[side.on.number];
-                    if (known.empty() || known.back() != 3 * contact + 2) {
-                      for (int r = 0; r < 3; ++r) known.push_back(3 * contact + r);
-                    }
-                    const auto first = static_cast<int>(known.size()) - 3;
-                    for (int k = 0; k < side.local.corners(); ++k) {
-                      for (int axis = 0; axis < 3; ++axis) {
-                        const int unknown = body.unknown(axis, side.nodes[k]);
-                        if (unknown < 0) continue;
-                        for (int r = 0; r < 3; ++r)
-                          entries[side.on.number].emplace_back(first + r, unknown, rows(r, axis) * weights[k]);
-                      }
-                    }
-                    break;
-                  }
-                  case Kind::rod: {
-                    const RodModel& rod = model.rods[side.on.number];
-                    const rod::Configuration& shape = reduced.rods[side.on.number].shape;
-                    const int nb = rod.rod.base_coordinates();
-                    Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, nb + rod.rod.strain_coordinates());
-                    const Vec3 out = sign * -touch.nearest.normal * side.local.radius;
-                    for (int k = 0; k < side.local.corners(); ++k) {
-                      const Vec3 offset = rod::branch(shape, side.abscissae[k]).R.transpose() * out;
-                      J += weights[k] * rod::position_jacobian(shape, side.abscissae[k], offset);
-                    }
-                    J = (rows * J).eval();
-                    if (nb > 0) on_bodies_.push_back({contact, rod.unknown, J.leftCols(nb)});
-                    on_rods_.push_back({contact, side.on.number, J.rightCols(rod.rod.strain_coordinates())});
-                    break;
-                  }
-                }
-              });
+  touching_ = room.playing;
+  for (int contact = 0; contact < static_cast<int>(touching_.size()); ++contact) {
+    const Touch& touch = room.touches[touching_[contact]];
+    each_side(touch, [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
+      const Eigen::Matrix3d rows = sign * touch.frame.transpose();
+      switch (side.on.kind) {
+        case Kind::obstacle:
+          break;
+        case Kind::body: {
+          OnBody own{contact, model.bodies[side.on.number].unknown, Eigen::Matrix3Xd(3, 6)};
+          own.J << rows, -rows * lie::hat(at - iterate.bodies[side.on.number].p);
+          on_bodies_.push_back(own);
+          break;
+        }
+        case Kind::solid: {
+          const solid::Body& body = model.solids[side.on.number].body;
+          std::vector<int>& known = rows_of_[side.on.number];
+          if (known.empty() || known.back() != 3 * contact + 2) {
+            for (int r = 0; r < 3; ++r) known.push_back(3 * contact + r);
+          }
+          const auto first = static_cast<int>(known.size()) - 3;
+          for (int k = 0; k < side.local.corners(); ++k) {
+            for (int axis = 0; axis < 3; ++axis) {
+              const int unknown = body.unknown(axis, side.nodes[k]);
+              if (unknown < 0) continue;
+              for (int r = 0; r < 3; ++r)
+                entries[side.on.number].emplace_back(first + r, unknown, rows(r, axis) * weights[k]);
+            }
+          }
+          break;
+        }
+        case Kind::rod: {
+          const RodModel& rod = model.rods[side.on.number];
+          const rod::Configuration& shape = reduced.rods[side.on.number].shape;
+          const int nb = rod.rod.base_coordinates();
+          Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, nb + rod.rod.strain_coordinates());
+          const Vec3 out = sign * -touch.nearest.normal * side.local.radius;
+          for (int k = 0; k < side.local.corners(); ++k) {
+            const Vec3 offset = rod::branch(shape, side.abscissae[k]).R.transpose() * out;
+            J += weights[k] * rod::position_jacobian(shape, side.abscissae[k], offset);
+          }
+          J = (rows * J).eval();
+          if (nb > 0) on_bodies_.push_back({contact, rod.unknown, J.leftCols(nb)});
+          on_rods_.push_back({contact, side.on.number, J.rightCols(rod.rod.strain_coordinates())});
+          break;
+        }
+      }
+    });
   }
-  touching_ = iterate.contacts.size();
   rubbing_.clear();
   for (const int k : model.rubbing) {
     const PointModel& point = model.points[k];
@@ -104,8 +102,8 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
   const int n = 3 * contacts();
   problem_.D.setZero(n, n);
   problem_.mu.setOnes(n / 3);
-  for (std::size_t i = 0; i < touching_; ++i)
-    problem_.mu[static_cast<Eigen::Index>(i)] = context.model.pairs[iterate.contacts[i].pair].friction;
+  for (std::size_t i = 0; i < touching_.size(); ++i)
+    problem_.mu[static_cast<Eigen::Index>(i)] = context.model.pairs[iterate.contacts[touching_[i]].pair].friction;
   for (std::size_t s = 0; s < free.size(); ++s) {
     if (rows_of_[s].empty()) continue;
     free[s].set_contact_rows(on_solids_[s]);
@@ -116,7 +114,7 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
     }
   }
   for (int row = 0; row < n; ++row) {
-    if (row >= 3 * static_cast<int>(touching_) && row % 3 != 1) continue;
+    if (row >= 3 * static_cast<int>(touching_.size()) && row % 3 != 1) continue;
     lambda_ = Eigen::VectorXd::Unit(n, row);
     respond(context, free, factor, lambda_);
     motion(answer_, problem_.D.col(row));
@@ -128,7 +126,7 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
     }
   }
   problem_.D = (0.5 * (problem_.D + problem_.D.transpose())).eval();
-  for (std::size_t i = touching_; i < static_cast<std::size_t>(contacts()); ++i) {
+  for (std::size_t i = touching_.size(); i < static_cast<std::size_t>(contacts()); ++i) {
     const auto k = static_cast<Eigen::Index>(3 * i);
     double& own = problem_.D(k + 1, k + 1);
     if (!(own > 0.0)) own = 1.0;  // a point beyond the tip
@@ -158,11 +156,12 @@ void ContactForces::respond(const StepContext& context, std::vector<FreeMotion>&
 ContactForces::At ContactForces::at(const StepContext& context, const State& iterate, const ContactRoom& room,
                                     int contact) const {
   const auto i = static_cast<std::size_t>(contact);
-  if (i < touching_) {
-    return {room.touches[i].frame.transpose() * iterate.contacts[i].force,
-            room.touches[i].u - Vec3(room.least[i], 0.0, 0.0)};
+  if (i < touching_.size()) {
+    const Touch& touch = room.touches[touching_[i]];
+    return {touch.frame.transpose() * iterate.contacts[touching_[i]].force,
+            touch.u - Vec3(room.least[touching_[i]], 0.0, 0.0)};
   }
-  const Rubbing& own = rubbing_[i - touching_];
+  const Rubbing& own = rubbing_[i - touching_.size()];
   const PointState& point = iterate.points[own.point];
   return {Vec3(own.limit(iterate.lambda), point.friction, 0.0),
           Vec3(0.0, point.s - context.start.points[own.point].s, 0.0)};
@@ -195,7 +194,7 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     // point more, and all of them soon.
     double changed = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < rubbing_.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(3 * (touching_ + i));
+      const auto k = static_cast<Eigen::Index>(3 * (touching_.size() + i));
       const double limit = rubbing_[i].limit(rows_);
       changed = std::max(changed, std::abs(limit + problem_.b[k] / problem_.D(k, k)));
       largest = std::max(largest, limit);
@@ -214,17 +213,18 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
   for (std::size_t s = 0; s < free.size(); ++s) {
     if (!rows_of_[s].empty()) free[s].add_contact_forces(more(rows_of_[s]));
   }
-  change.contacts.resize(touching_);
-  for (std::size_t i = 0; i < touching_; ++i)
-    change.contacts[i] = room.touches[i].frame * more.segment<3>(static_cast<Eigen::Index>(3 * i));
+  change.contacts.assign(iterate.contacts.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < touching_.size(); ++i)
+    change.contacts[touching_[i]] =
+        room.touches[touching_[i]].frame * more.segment<3>(static_cast<Eigen::Index>(3 * i));
   change.frictions.resize(rubbing_.size());
   for (std::size_t i = 0; i < rubbing_.size(); ++i)
-    change.frictions[i] = more[static_cast<Eigen::Index>(3 * (touching_ + i) + 1)];
+    change.frictions[i] = more[static_cast<Eigen::Index>(3 * (touching_.size() + i) + 1)];
 }
 
 double ContactForces::error(const StepContext& context, const State& iterate, const ContactRoom& room) const {
-  if (!wanted(context.model, iterate)) return 0.0;
-  if (problem_.D.rows() != 3 * contacts() || touching_ != iterate.contacts.size()) return INFINITY;
+  if (!wanted(context.model, room)) return 0.0;
+  if (problem_.D.rows() != 3 * contacts() || touching_ != room.playing) return INFINITY;
   double worst = 0.0;
   for (int i = 0; i < contacts(); ++i) {
     const Eigen::Index k = 3 * i;

@@ -19,8 +19,8 @@ struct ContactChange {
 class ContactForces {
  public:
   /// Whether there is anything to do.
-  static bool wanted(const Model& model, const State& iterate) {
-    return !iterate.contacts.empty() || !model.rubbing.empty();
+  static bool wanted(const Model& model, const ContactRoom& room) {
+    return !room.playing.empty() || !model.rubbing.empty();
   }
   /// Rows J of all contacts, in their frames, and D = J A^-1 J^T with A the matrix of the whole step, coupling rows
   /// included. `factor` and `free` must be factored. Where a rod rubs in its channel, J is the point's abscissa.
@@ -62,7 +62,7 @@ class ContactForces {
     Vec3 force, u;
   };
   At at(const StepContext& context, const State& iterate, const ContactRoom& room, int contact) const;
-  int contacts() const { return static_cast<int>(touching_ + rubbing_.size()); }
+  int contacts() const { return static_cast<int>(touching_.size() + rubbing_.size()); }
   void add_rows(const StepContext& context, const State& iterate, const ContactRoom& room, const Reduced& reduced);
   void respond(const StepContext& context, std::vector<FreeMotion>& free, solve::CoupledFactor& factor,
                const Eigen::VectorXd& lambda);
@@ -70,7 +70,7 @@ class ContactForces {
             solve::RightSide& side);
   void motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const;
 
-  std::size_t touching_ = 0;  ///< contacts; those that rub come after them
+  std::vector<int> touching_;  ///< contacts that play; those that rub come after them
   std::vector<Rubbing> rubbing_;
   std::vector<OnBody> on_bodies_;
   std::vector<OnRod> on_rods_;

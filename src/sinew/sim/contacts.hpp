@@ -7,13 +7,14 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sinew/sim/step_context.hpp"
+#include "sinew/sim/contact_search.hpp"
 
 namespace sinew {
 
 /// A contact at an iterate: x_a - x_b are its material points, u = (gap, slip along the two tangents) what Signorini's
 /// and Coulomb's laws are about.
 struct Touch {
+  ContactSide a, b;  ///< of the contact; a thick part that slides on a surface has gone on to the face it is over
   contact::Nearest nearest;
   Eigen::Matrix3d frame;  ///< normal (from b to a) and two tangents, as columns
   Vec3 point_a, point_b;  ///< [m] on the two surfaces
@@ -23,16 +24,11 @@ struct Touch {
 /// What contacts of a step are evaluated with; memory of the last time.
 struct ContactRoom {
   std::vector<rod::Configuration> start, now;  ///< of rods that touch something
-  /// Of each solid that touches another or a rod, at the start of the step: boxes around triangles and ridges, and
-  /// outward directions at its nodes.
-  struct Surface {
-    contact::Tree faces, edges;
-    std::vector<contact::Box> boxes;
-    Eigen::Matrix3Xd outward;
-  };
-  std::vector<Surface> surfaces;
-  std::vector<contact::Facing> facings;  ///< of each contact, as it is at the start
+  std::vector<Surface> surfaces;               ///< of each solid, at the start, if it is in a pair
+  std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
   std::vector<Touch> touches;
+  /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
+  std::vector<int> playing;
   /// [m] least gap of each at the end of the step: 0, or below while bodies that overlap are moved apart, or above
   /// where one bounces.
   std::vector<double> least;
@@ -50,9 +46,9 @@ void finish_contacts(const ContactRoom& room, State& next);
 /// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,
 /// -1 for what feels the opposite.
 template <class Visit>
-void each_side(const ContactState& contact, const Touch& touch, const Visit& visit) {
-  visit(contact.a, touch.nearest.a, touch.point_a, 1.0);
-  visit(contact.b, touch.nearest.b, touch.point_b, -1.0);
+void each_side(const Touch& touch, const Visit& visit) {
+  visit(touch.a, touch.nearest.a, touch.point_a, 1.0);
+  visit(touch.b, touch.nearest.b, touch.point_b, -1.0);
 }
 
 /// How far parts may be apart at the start of a step to be looked at [m].

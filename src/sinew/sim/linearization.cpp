@@ -161,7 +161,7 @@ void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::R
   const Model& model = context_->model;
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
   factor_.solve(side, increment.reduced);
-  if (ContactForces::wanted(model, *iterate_) && increment.reduced.ok) {
+  if (ContactForces::wanted(model, contacts_) && increment.reduced.ok) {
     if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);
     contacts_ready_ = true;
     contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces);

@@ -95,7 +95,7 @@ void add_actuator(const StepContext& context, const State& iterate, std::size_t 
 void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const ContactState& own = rod.iterate().contacts[i];
-    each_side(own, touches[i],
+    each_side(touches[i],
               [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
                 if (side.on != Collider{Collider::Kind::rod, rod.number()}) return;
                 for (int k = 0; k < side.local.corners(); ++k) {
@@ -121,18 +121,19 @@ void add_bodies(const StepContext& context, const State& iterate, const std::vec
     problem.B.add(own.unknown, own.unknown, equations.tangent);
     reduced.scale = std::max(
         reduced.scale, own.body.mass * (context.gravity.norm() + (context.start.bodies[i].v * context.rate).norm()));
+    const double spin = (own.body.inertia * context.start.bodies[i].w).norm() * context.rate;
+    reduced.scale = std::max(reduced.scale, spin / model.arms[own.unknown + 3]);
   }
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const ContactState& contact = iterate.contacts[i];
-    each_side(contact, touches[i],
-              [&](const ContactSide& side, const std::array<double, 3>&, const Vec3& at, double sign) {
-                if (side.on.kind != Collider::Kind::body) return;
-                const Vec3 force = sign * contact.force;
-                auto r = problem.r.segment<6>(model.bodies[side.on.number].unknown);
-                r.head<3>() -= force;
-                r.tail<3>() -= (at - iterate.bodies[side.on.number].p).cross(force);
-                reduced.scale = std::max(reduced.scale, force.norm());
-              });
+    each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>&, const Vec3& at, double sign) {
+      if (side.on.kind != Collider::Kind::body) return;
+      const Vec3 force = sign * contact.force;
+      auto r = problem.r.segment<6>(model.bodies[side.on.number].unknown);
+      r.head<3>() -= force;
+      r.tail<3>() -= (at - iterate.bodies[side.on.number].p).cross(force);
+      reduced.scale = std::max(reduced.scale, force.norm());
+    });
   }
 }
 

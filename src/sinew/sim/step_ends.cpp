@@ -224,6 +224,7 @@ double inertia_of(const StepContext& context) {
   for (const RodModel& rod : context.model.rods) {
     for (const rod::MassPoint& point : rod.rod.masses) mass += point.mass;
   }
+  for (const BodyModel& body : context.model.bodies) mass += body.body.mass;
   return mass * context.rate * context.rate;
 }
 

@@ -33,6 +33,7 @@ double CoulombResidual::largest() const { return std::max({complementarity, cone
 CoulombResidual residual(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
   CoulombResidual left;
   const Eigen::VectorXd u = problem.D * lambda + problem.b;
+  if (!u.allFinite()) return {INFINITY, INFINITY, INFINITY};
   double largest = 0.0;
   for (int i = 0; i < problem.contacts(); ++i) {
     const auto k = 3 * i;
@@ -91,8 +92,10 @@ bool solve_one(const Eigen::Matrix3d& D, const Eigen::Vector3d& b, double mu, Ei
     return true;
   }
   if (mu == 0.0) {
-    lambda = Eigen::Vector3d(-b[0] / D(0, 0), 0.0, 0.0);
-    return lambda.allFinite();
+    const double force = -b[0] / D(0, 0);
+    if (!std::isfinite(force)) return false;
+    lambda = Eigen::Vector3d(force, 0.0, 0.0);
+    return true;
   }
   const Eigen::LDLT<Eigen::Matrix3d> factor(D);
   if (factor.info() == Eigen::Success) {
