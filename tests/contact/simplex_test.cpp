@@ -108,6 +108,36 @@ TEST(Simplex, GapChangesAsTheNormalSays) {
   }
 }
 
+TEST(Simplex, NormalOfWhatStaysApartTurnsAsTold) {
+  Random random;
+  constexpr double e = 1e-6;
+  int told = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    for (const Simplex::Kind kind : {point, segment, triangle, plane}) {
+      const bool edges = trial % 2 == 1 && kind == segment;
+      const Simplex a = simplex(edges ? segment : point, random, 0.1), b = simplex(kind, random, 0.05);
+      const Facing kept = facing(a, b);
+      const Nearest here = nearest(a, b, kept);
+      const Eigen::Matrix3d H = turn_of_normal(a, b, here, kept);
+      if (H.norm() > 10.0) continue;  // all but touching, where differences say nothing
+      Eigen::Matrix3d difference;
+      double off = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        Simplex ahead = a, behind = a;
+        for (Vec3& x : ahead.x) x[i] += e;
+        for (Vec3& x : behind.x) x[i] -= e;
+        const Nearest plus = nearest(ahead, b, kept), minus = nearest(behind, b, kept);
+        difference.col(i) = (plus.normal - minus.normal) / (2 * e);
+        off = std::max(off, ((plus.normal - here.normal) - (here.normal - minus.normal)).norm());
+      }
+      if (off > 1e-8) continue;  // the nearest part changes there
+      EXPECT_LT((H - difference).norm(), 1e-4 * (1.0 + H.squaredNorm())) << trial;
+      told += H.norm() > 0.1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(told, 200);
+}
+
 TEST(Simplex, NormalOfAFaceStaysWhereAPointPassesThroughIt) {
   Simplex face;
   face.kind = triangle;

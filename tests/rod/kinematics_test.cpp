@@ -112,6 +112,35 @@ TEST_P(EveryBasis, weights_give_the_mass_matrix) {
   EXPECT_LT((dense_tangent(at(q), equations(q, loads)) - expected).norm(), 1e-13 * expected.norm());
 }
 
+TEST_P(EveryBasis, stiffnesses_give_the_exact_tangent_of_springs) {
+  // Springs from where the points are: forces S (X - X_0) grow from f.
+  std::vector<Mat3> stiffness;
+  for (double s : kAbscissae) {
+    Mat3 S = Vec3(1.0 + s, -0.5, 2.0 * s).asDiagonal();
+    S(0, 1) = S(1, 0) = 0.3 - s;
+    S(1, 2) = S(2, 1) = 0.7 * s;
+    stiffness.push_back(S);
+  }
+  const Configuration start = at(q);
+  const auto sprung = [&](const Configuration& shape) {
+    std::vector<PointLoad> loads;
+    for (std::size_t i = 0; i < std::size(kAbscissae); ++i) {
+      const double s = kAbscissae[i];
+      PointLoad load{s, kOffset, Vec3(1.0 + s, -0.5, 0.3 * s)};
+      load.force += stiffness[i] * (position(shape, s, kOffset) - position(start, s, kOffset));
+      load.stiffness = &stiffness[i];
+      loads.push_back(load);
+    }
+    return loads;
+  };
+  const Eigen::MatrixXd numeric =
+      difference([&](const Eigen::VectorXd& x) { return equations(x, sprung(at(x))).r; }, q, 1e-6);
+  const Eigen::MatrixXd H = dense_tangent(start, equations(q, sprung(start)));
+  EXPECT_GT(H.norm(), 0.1);
+  EXPECT_LT((H - H.transpose()).norm(), 1e-13 * (1 + H.norm()));
+  EXPECT_LT((H - numeric).norm(), 5e-8);
+}
+
 TEST_P(EveryBasis, sliding_abscissae_have_their_exact_derivatives) {
   const Vec3 f(0.7, -0.4, 0.5);
   double largest = 0.0;

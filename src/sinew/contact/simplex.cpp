@@ -205,4 +205,28 @@ Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
   return found;
 }
 
+Eigen::Matrix3d turn_of_normal(const Simplex& a, const Simplex& b, const Nearest& found, const Facing& kept) {
+  const double apart = found.gap + a.radius + b.radius;
+  if (kept.kind != Facing::Kind::apart || b.kind == Simplex::Kind::plane || apart == 0.0)
+    return Eigen::Matrix3d::Zero();
+  // What has several corners near may slide along the line or plane through them.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() - found.normal * found.normal.transpose();
+  const auto slides = [&turn](const Simplex& own, const std::array<double, 3>& weights) {
+    Vec3 first = Vec3::Zero();
+    int near = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) {
+      if (!(weights[i] > 0.0)) continue;
+      if (near++ == 0) {
+        first = own.x[i];
+      } else {
+        const Vec3 along = (turn * (own.x[i] - first)).normalized();  // across what is taken out already
+        turn -= along * along.transpose();
+      }
+    }
+  };
+  slides(a, found.a);
+  slides(b, found.b);
+  return turn / apart;
+}
+
 }  // namespace sinew::contact

@@ -50,6 +50,9 @@ struct Facing {
 Facing facing(const Simplex& a, const Simplex& b);
 Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept);
 
+/// How the normal turns as a moves past b without turning: dn = H dx, symmetric; H is the gap's second derivative.
+Eigen::Matrix3d turn_of_normal(const Simplex& a, const Simplex& b, const Nearest& found, const Facing& kept);
+
 /// Weights of the corners at the point of a segment or triangle that is nearest to p.
 std::array<double, 2> on_segment(const Vec3& p, const Vec3& x, const Vec3& y);
 std::array<double, 3> on_triangle(const Vec3& p, const Vec3& x, const Vec3& y, const Vec3& z);

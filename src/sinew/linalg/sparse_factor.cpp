@@ -139,6 +139,21 @@ void SparseFactor::half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen:
   std::visit([&](const auto& panels) { panels.half_solve(b, y); }, panels_);
 }
 
+std::vector<int> SparseFactor::reach(std::span<const int> unknowns) const {
+  std::vector<bool> met(plan_->fronts.size(), false);
+  for (const int unknown : unknowns) {
+    for (auto i = static_cast<int>(&plan_->front_of(unknown) - plan_->fronts.data()); i >= 0 && !met[i];
+         i = plan_->fronts[i].parent)
+      met[i] = true;
+  }
+  std::vector<int> places;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    const Front& front = plan_->fronts[i];
+    for (int k = 0; met[i] && k < front.columns; ++k) places.push_back(front.first + k);
+  }
+  return places;
+}
+
 void SparseFactor::back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const {
   std::visit([&](const auto& panels) { panels.back_solve(y, x); }, panels_);
 }

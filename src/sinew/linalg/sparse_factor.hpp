@@ -65,8 +65,12 @@ class SparseFactor {
   Eigen::VectorXd signs() const;
   /// r <- r - A x, with A as it has been put together.
   void subtract_product(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> r) const;
-  /// y = R b: with X made of such columns, B^T A^-1 B = X^T S X.
+  /// y = R b: with X made of such columns, B^T A^-1 B = X^T S X. Of a sparse b, costs little beside the fronts from its
+  /// unknowns to the root.
   void half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const;
+  /// Where such y can differ from zero: places in the order of elimination, ascending, on the way from these unknowns
+  /// to the root.
+  std::vector<int> reach(std::span<const int> unknowns) const;
   /// x = R^T S y: the second half of A^-1 b.
   void back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const;
   /// x = A^-1 b.

@@ -33,8 +33,14 @@ class Beyond {
       second_ += x * (load.bends ? Vec3(weighted - load.force) : weighted).transpose();
       moment_ += load.moment;
     }
+    if (load.stiffness) {
+      Eigen::Matrix<double, 3, 6> J;  // of x by a twist
+      J << -hat(x), Mat3::Identity();
+      add_springs(J.transpose() * *load.stiffness * J);
+    }
   }
   void add(const Beyond& other) {
+    if (other.sprung_) add_springs(other.springs_);
     wrench_ += other.wrench_;
     weight_ += other.weight_;
     lever_ += other.lever_;
@@ -53,10 +59,22 @@ class Beyond {
   /// with a potential U = K. Weights answer the acceleration v + omega x X; a force that stays is moved by it; a wrench
   /// that is carried along does not change with what comes later, and a moment that stays has a later axis turn under
   /// it.
-  Mat6 K() const { return assembled(Vec3(carried_.head<3>()), bending().tail<3>(), carried_.tail<3>()); }
-  Mat6 U() const { return assembled(moment_, bending().tail<3>() - carried_.tail<3>(), Vec3::Zero()); }
+  Mat6 K() const { return sprung(assembled(Vec3(carried_.head<3>()), bending().tail<3>(), carried_.tail<3>())); }
+  Mat6 U() const { return sprung(assembled(moment_, bending().tail<3>() - carried_.tail<3>(), Vec3::Zero())); }
 
  private:
+  void add_springs(const Mat6& more) {
+    if (sprung_) {
+      springs_ += more;
+    } else {
+      springs_ = more;
+    }
+    sprung_ = true;
+  }
+  Mat6 sprung(Mat6 K) const {
+    if (sprung_) K += springs_;
+    return K;
+  }
   Mat6 assembled(const Vec3& moment, const Vec3& moved, const Vec3& carried) const {
     Mat6 K;
     K.topLeftCorner<3, 3>() = -second_ - hat(moment);
@@ -74,6 +92,8 @@ class Beyond {
   Vec6 carried_ = Vec6::Zero();  ///< the wrench of followers
   Vec6 outside_ = Vec6::Zero();  ///< the wrench of loads that stay out of the tangent
   Vec3 moment_ = Vec3::Zero();   ///< sum of the moments that stay
+  bool sprung_ = false;
+  Mat6 springs_;  ///< sum of stiffnesses, by twists; only if there are any
 };
 
 using linalg::Columns;

@@ -8,7 +8,8 @@
 
 namespace sinew::rod {
 
-/// A force and moment on a material point, and a weight (mass / h^2 in a time step, 0 for a plain force).
+/// A force and moment on a material point, and how the force grows as the point moves: a weight (mass / h^2 in a time
+/// step, 0 for a plain force), or any symmetric matrix.
 struct PointLoad {
   double s = 0.0;
   Vec3 offset = Vec3::Zero();
@@ -20,6 +21,7 @@ struct PointLoad {
   bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
   int station = -1;     ///< at this one of the rod's, which the configuration then knows
   int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
+  const Mat3* stiffness = nullptr;  ///< [N/m] world axes, symmetric, beside the weight
 };
 
 /// What an abscissa s that carries a force f adds to the equations of a rod: f . gamma_qs and f . gamma_ss.
@@ -52,7 +54,7 @@ bool conservative(std::span<const PointLoad> loads);
 
 /// With X_i(q) the loaded points and J_i their Jacobians, adds
 ///     r     += sum J_i^T f_i  (and omega_i^T m_i),
-///     chain += sum w_i J_i^T J_i + d(J_i^T f_i)/dq           (exact),
+///     chain += sum J_i^T (w_i + S_i) J_i + d(J_i^T f_i)/dq     (exact),
 /// and fills slides and internal. `loads` must be sorted by s.
 void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations);
 

@@ -104,7 +104,7 @@ std::vector<PointModel> independent_points(Model& model, const std::vector<Point
     std::vector<PointModel> others;
     for (const PointModel& point : candidates) {
       if (!of_this_kind(point)) continue;
-      if (held && line.rod >= 0 && !point.fixed && point.abscissa <= 1e-9 * length_of(model, line)) {
+      if (held && !point.fixed && point.abscissa <= 1e-9 * length_of(model, line)) {
         facts.no_unknown.push_back(point.abscissa);
       } else {
         (point.fixed ? points : others).push_back(point);

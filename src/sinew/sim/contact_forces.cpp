@@ -91,9 +91,13 @@ void ContactForces::add_rows(const StepContext& context, const State& iterate, c
 
 /// How the rows move with a reduced solution: bodies, rods, and volumes pushed by their coupling rows are another part.
 void ContactForces::motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const {
-  for (const OnBody& own : on_bodies_)
-    u.segment<3>(3 * own.contact) += own.J * solution.dz.segment(own.unknown, own.J.cols());
+  bodies_motion(solution, u);
   for (const OnRod& own : on_rods_) u.segment<3>(3 * own.contact) += own.J * solution.dq[own.rod];
+}
+
+void ContactForces::bodies_motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const {
+  for (const OnBody& own : on_bodies_)
+    u.segment<3>(3 * own.contact) += own.J.lazyProduct(solution.dz.segment(own.unknown, own.J.cols()));
 }
 
 void ContactForces::prepare(const StepContext& context, const State& iterate, const ContactRoom& room,
@@ -113,11 +117,20 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
         problem_.D(rows_of_[s][i], rows_of_[s][j]) += own(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
     }
   }
+  moved_.resize(context.model.rods.size());
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    const auto on_it = [i](const OnRod& own) { return own.rod == static_cast<int>(i); };
+    const bool touched = std::any_of(on_rods_.begin(), on_rods_.end(), on_it);
+    moved_[i].setZero(touched ? context.model.rods[i].rod.strain_coordinates() : 0, n);
+  }
   for (int row = 0; row < n; ++row) {
     if (row >= 3 * static_cast<int>(touching_.size()) && row % 3 != 1) continue;
     lambda_ = Eigen::VectorXd::Unit(n, row);
     respond(context, free, factor, lambda_);
-    motion(answer_, problem_.D.col(row));
+    bodies_motion(answer_, problem_.D.col(row));
+    for (std::size_t i = 0; i < moved_.size(); ++i) {
+      if (moved_[i].rows() > 0) moved_[i].col(row) = answer_.dq[i];
+    }
     for (std::size_t s = 0; s < free.size(); ++s) {
       if (rows_of_[s].empty()) continue;
       own_ = free[s].coupled_motion(context.model.solids[s], context.model, answer_.dlambda);
@@ -125,6 +138,8 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
         problem_.D(rows_of_[s][i], row) += own_[static_cast<Eigen::Index>(i)];
     }
   }
+  // Rods' part of all columns together, which is most of the work where there are rods.
+  for (const OnRod& own : on_rods_) problem_.D.middleRows<3>(3 * own.contact).noalias() += own.J * moved_[own.rod];
   problem_.D = (0.5 * (problem_.D + problem_.D.transpose())).eval();
   for (std::size_t i = touching_.size(); i < static_cast<std::size_t>(contacts()); ++i) {
     const auto k = static_cast<Eigen::Index>(3 * i);
@@ -137,9 +152,14 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
 /// What forces at the contacts add to a right side of the reduced problem.
 void ContactForces::push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
                          solve::RightSide& side) {
-  for (const OnBody& own : on_bodies_)
-    side.r.segment(own.unknown, own.J.cols()) -= own.J.transpose() * lambda.segment<3>(3 * own.contact);
-  for (const OnRod& own : on_rods_) side.chains[own.rod] -= own.J.transpose() * lambda.segment<3>(3 * own.contact);
+  const auto pushed = [&lambda](int contact) { return !lambda.segment<3>(3 * contact).isZero(0.0); };
+  for (const OnBody& own : on_bodies_) {
+    if (pushed(own.contact))
+      side.r.segment(own.unknown, own.J.cols()) -= own.J.transpose() * lambda.segment<3>(3 * own.contact);
+  }
+  for (const OnRod& own : on_rods_) {
+    if (pushed(own.contact)) side.chains[own.rod].noalias() -= own.J.transpose() * lambda.segment<3>(3 * own.contact);
+  }
   for (std::size_t s = 0; s < free.size(); ++s) {
     if (!rows_of_[s].empty())
       free[s].push_contacts(context.model.solids[s], context.model, lambda(rows_of_[s]), side.c);
@@ -158,8 +178,7 @@ ContactForces::At ContactForces::at(const StepContext& context, const State& ite
   const auto i = static_cast<std::size_t>(contact);
   if (i < touching_.size()) {
     const Touch& touch = room.touches[touching_[i]];
-    return {touch.frame.transpose() * iterate.contacts[touching_[i]].force,
-            touch.u - Vec3(room.least[touching_[i]], 0.0, 0.0)};
+    return {touch.frame.transpose() * touch.force, touch.u - Vec3(room.least[touching_[i]], 0.0, 0.0)};
   }
   const Rubbing& own = rubbing_[i - touching_.size()];
   const PointState& point = iterate.points[own.point];
@@ -213,9 +232,10 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
   for (std::size_t s = 0; s < free.size(); ++s) {
     if (!rows_of_[s].empty()) free[s].add_contact_forces(more(rows_of_[s]));
   }
-  change.contacts.assign(iterate.contacts.size(), Vec3::Zero());
+  change.contacts.clear();
+  for (const Touch& touch : room.touches) change.contacts.push_back({touch.force, Vec3::Zero(), touch.nearest.normal});
   for (std::size_t i = 0; i < touching_.size(); ++i)
-    change.contacts[touching_[i]] =
+    change.contacts[touching_[i]].more =
         room.touches[touching_[i]].frame * more.segment<3>(static_cast<Eigen::Index>(3 * i));
   change.frictions.resize(rubbing_.size());
   for (std::size_t i = 0; i < rubbing_.size(); ++i)

@@ -11,7 +11,11 @@ namespace sinew {
 
 /// What forces change by: of each contact, in the world, and of friction at each of the model's rubbing points [N].
 struct ContactChange {
-  std::vector<Vec3> contacts;
+  struct Force {
+    Vec3 from, more;  ///< [N]
+    Vec3 normal;      ///< where both are told
+  };
+  std::vector<Force> contacts;
   std::vector<double> frictions;
 };
 
@@ -69,6 +73,7 @@ class ContactForces {
   void push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
             solve::RightSide& side);
   void motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const;
+  void bodies_motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const;
 
   std::vector<int> touching_;  ///< contacts that play; those that rub come after them
   std::vector<Rubbing> rubbing_;
@@ -81,6 +86,7 @@ class ContactForces {
   solve::CoulombProblem problem_;
   solve::Coulomb coulomb_;
   solve::CoulombReport report_;
+  std::vector<Eigen::MatrixXd> moved_;  ///< of each rod, its coordinates by each row
   Eigen::VectorXd lambda_, old_, own_, rows_;
 };
 

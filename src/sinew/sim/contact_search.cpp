@@ -24,11 +24,6 @@ void fit(const SolidModel& model, const Eigen::Matrix3Xd& x, Surface& own) {
   if (own.faces.whole().isEmpty()) {
     own.faces = model.faces;
     own.edges = model.edges;
-    own.at_node.resize(static_cast<std::size_t>(x.cols()));
-    for (std::size_t i = 0; i < model.surface.size(); ++i) {
-      for (const int node : model.surface[i])
-        own.at_node[static_cast<std::size_t>(node)].push_back(static_cast<int>(i));
-    }
   }
   own.faces.fit(own.boxes);
   own.boxes.clear();
@@ -37,39 +32,6 @@ void fit(const SolidModel& model, const Eigen::Matrix3Xd& x, Surface& own) {
     for (const int node : ridge.ends) box.extend(Vec3(x.col(node)));
   }
   own.edges.fit(own.boxes);
-}
-
-void follow(const SolidModel& model, const Surface& own, const Eigen::Matrix3Xd& x, const contact::Vec3& point,
-            ContactSide& side) {
-  constexpr int kMostFaces = 16;  // a step leads past
-  const auto weights_on = [&](const std::array<int, 3>& nodes) {
-    return contact::on_triangle(point, x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]));
-  };
-  const auto distance = [&](const std::array<int, 3>& nodes, const std::array<double, 3>& weights) {
-    return (point - weights[0] * x.col(nodes[0]) - weights[1] * x.col(nodes[1]) - weights[2] * x.col(nodes[2])).norm();
-  };
-  std::array<double, 3> weights = weights_on(side.nodes);
-  double least = distance(side.nodes, weights);
-  for (int turn = 0; turn < kMostFaces; ++turn) {
-    // Only past an edge or a corner can another face be nearer, one that is there, too.
-    const std::array<int, 3> here = side.nodes;
-    if (std::min({weights[0], weights[1], weights[2]}) > 0.0) break;
-    const std::array<double, 3> at = weights;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (at[i] == 0.0) continue;
-      for (const int other : own.at_node[static_cast<std::size_t>(here[i])]) {
-        const std::array<int, 3>& nodes = model.surface[static_cast<std::size_t>(other)];
-        const std::array<double, 3> there = weights_on(nodes);
-        if (!(distance(nodes, there) < least * (1.0 - 1e-12))) continue;
-        side.nodes = nodes;
-        weights = there;
-        least = distance(nodes, there);
-      }
-    }
-    if (side.nodes == here) break;
-  }
-  side.local.normal.setZero();
-  for (std::size_t i = 0; i < 3; ++i) side.local.normal += weights[i] * own.outward.col(side.nodes[i]);
 }
 
 namespace {
@@ -228,7 +190,7 @@ class Search {
       if (is_rigid(faced)) {
         add_shape(a, point, faced, key(part, number, 0));
       } else {
-        add_nearest_face(a, point, faced, key(part, number, 0));
+        add_faces(a, point, faced, number, part);
       }
     });
   }
@@ -242,13 +204,16 @@ class Search {
     if (contact::nearest(contact::point_at(own, point.radius), b.local).gap < alarm_) add(a, b, part);
   }
 
-  void add_nearest_face(const ContactSide& a, const Simplex& point, const Collider& soft, std::uint64_t part) {
+  /// A thin point meets the nearest face. A thick one may lie in a hollow and touch many, so it meets all that it is in
+  /// front of: each with its own nearest point, which may lie on an edge that others share.
+  void add_faces(const ContactSide& a, const Simplex& point, const Collider& soft, int prong, Part part) {
     const SolidModel& solid = start_.model.solids[soft.number];
-    const bool itself = a.on == soft;
+    const bool itself = a.on == soft, thick = point.radius > 0.0;
     ContactSide b;
     b.on = soft;
     b.local.kind = Simplex::Kind::triangle;
     double nearest = alarm_;
+    bool in_front = false;
     std::array<int, 3> nodes{};
     contact::Vec3 outward = contact::Vec3::Zero();
     const contact::Box where = grown(contact::Box(point.x[0]), point.radius);
@@ -263,30 +228,39 @@ class Search {
       face.normal = b.local.normal;
       found = contact::nearest(point, face);
       const bool corner = std::max({found.b[0], found.b[1], found.b[2]}) >= 1.0;
-      if (point.radius > 0.0 && is_rigid(a.on) && corner) return;  // that is the business of the nodes
+      // Corners are the business of the nodes, and so is all of a fine mesh: between nodes on a ball of radius r its
+      // edges e lie e^2 / 8 r deep in it.
+      if (thick && is_rigid(a.on) && (corner || longest_edge(face) < 0.5 * point.radius)) return;
+      if (std::abs(found.gap) >= alarm_) return;
+      const Vec3 n = (face.x[1] - face.x[0]).cross(face.x[2] - face.x[0]);
+      if (thick && n.dot(point.x[0] - face.x[0]) > 0.0) {
+        add(a, b, key(part, prong, number));
+        in_front = true;
+      }
       if (std::abs(found.gap) >= nearest) return;
       // The far side of something thin, or round the corner of what the point is above.
-      const Vec3 n = (face.x[1] - face.x[0]).cross(face.x[2] - face.x[0]);
       if (a.on.kind == Kind::solid && n.dot(surfaces_[a.on.number].outward.col(a.nodes[0])) >= 0.0) return;
       nearest = std::abs(found.gap);
       nodes = b.nodes;
       outward = b.local.normal;
     });
-    if (nearest == alarm_) return;
+    if (nearest == alarm_ || in_front) return;
     b.nodes = nodes;
     b.local.normal = outward;
-    add(a, b, part);
+    add(a, b, key(part, prong, 0));
+  }
+
+  static double longest_edge(const Simplex& face) {
+    double edge = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) edge = std::max(edge, (face.x[i] - face.x[(i + 1) % 3]).norm());
+    return edge;
   }
 
   /// Whether a node and a triangle of the same solid are neighbours.
   bool near_at_rest(const SolidModel& solid, int node, const std::array<int, 3>& face) const {
     const auto at = [&](int n) { return Vec3(solid.body.rest.col(n)); };
-    const contact::Nearest found =
-        contact::nearest(contact::point_at(at(node), 0.0),
-                         Simplex{Simplex::Kind::triangle, {at(face[0]), at(face[1]), at(face[2])}, Vec3::Zero(), 0.0});
-    double edge = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) edge = std::max(edge, (at(face[i]) - at(face[(i + 1) % 3])).norm());
-    return std::abs(found.gap) < 0.5 * edge;
+    const Simplex rest{Simplex::Kind::triangle, {at(face[0]), at(face[1]), at(face[2])}, Vec3::Zero(), 0.0};
+    return std::abs(contact::nearest(contact::point_at(at(node), 0.0), rest).gap) < 0.5 * longest_edge(rest);
   }
 
   struct Edge {

@@ -80,6 +80,12 @@ Eigen::Matrix3d frame_of(const Vec3& n) {
   return frame;
 }
 
+/// The force of a contact, which keeps its place about the normal, as that is n.
+Vec3 turned(const ContactState& own, const Vec3& n) {
+  if (own.normal.isZero()) return own.force;
+  return Eigen::Quaterniond::FromTwoVectors(own.normal, n) * own.force;
+}
+
 /// What a frame does to the world over the step.
 Placement carried(const StepContext& context, const std::vector<Placement>& before, int frame) {
   return frame < 0 ? Placement{} : compose(context.moved(frame), inverse(before[static_cast<std::size_t>(frame)]));
@@ -180,7 +186,9 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   auto old = context.start.contacts.begin();
   for (ContactState& own : found) {
     while (old != context.start.contacts.end() && earlier(*old, own)) ++old;
-    if (old != context.start.contacts.end() && !earlier(own, *old)) own.force = old->force;
+    if (old == context.start.contacts.end() || earlier(own, *old)) continue;
+    own.force = old->force;
+    own.normal = old->normal;
   }
   iterate.contacts = std::move(found);
   room.least.clear();
@@ -201,6 +209,7 @@ void finish_contacts(const ContactRoom& room, State& next) {
     ContactState& own = next.contacts[i];
     const Touch& touch = room.touches[i];
     own.point = touch.point_b;
+    own.force = turned(own, touch.nearest.normal);
     own.normal = touch.nearest.normal;
     own.gap = touch.nearest.gap;
     own.slip = touch.u.tail<2>().norm();
@@ -220,15 +229,13 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     Touch& touch = room.touches[i];
     touch.a = own.a;
     touch.b = own.b;
-    const Simplex a = now.placed(own.a);
-    if (a.radius > 0.0 && own.b.on.kind == Kind::solid && own.b.local.kind == Simplex::Kind::triangle) {
-      const int solid = own.b.on.number;
-      follow(context.model.solids[solid], room.surfaces[solid], iterate.solids[solid].x, a.x[0], touch.b);
-    }
-    const Simplex b = now.placed(touch.b);
+    const Simplex a = now.placed(own.a), b = now.placed(own.b);
     touch.nearest = contact::nearest(a, b, room.facings[i]);
     const Vec3& n = touch.nearest.normal;
     touch.frame = frame_of(n);
+    touch.force = turned(own, n);
+    if (own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle)
+      touch.stiffness = -touch.force.dot(n) * contact::turn_of_normal(a, b, touch.nearest, room.facings[i]);
     touch.point_a = surface_point(a, touch.nearest.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)
                                                    : surface_point(b, touch.nearest.b, n);

@@ -14,11 +14,14 @@ namespace sinew {
 /// A contact at an iterate: x_a - x_b are its material points, u = (gap, slip along the two tangents) what Signorini's
 /// and Coulomb's laws are about.
 struct Touch {
-  ContactSide a, b;  ///< of the contact; a thick part that slides on a surface has gone on to the face it is over
+  ContactSide a, b;
   contact::Nearest nearest;
-  Eigen::Matrix3d frame;  ///< normal (from b to a) and two tangents, as columns
-  Vec3 point_a, point_b;  ///< [m] on the two surfaces
-  Vec3 u = Vec3::Zero();  ///< [m] gap, and slip since the start of the step
+  Eigen::Matrix3d frame;      ///< normal (from b to a) and two tangents, as columns
+  Vec3 point_a, point_b;      ///< [m] on the two surfaces
+  Vec3 force = Vec3::Zero();  ///< [N] on a, turned with the normal since it was set
+  Vec3 u = Vec3::Zero();      ///< [m] gap, and slip since the start of the step
+  /// [N/m] of a rod's point on an obstacle: how the normal force turns as it moves, - lambda_n dn/dx.
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
 };
 
 /// What contacts of a step are evaluated with; memory of the last time.

@@ -53,7 +53,7 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
       r.col(nodes[c]) -= row.where.weights[static_cast<Eigen::Index>(c)] * iterate.lambda.segment<3>(row.row);  // H^T
   }
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    const Vec3& force = iterate.contacts[i].force;
+    const Vec3& force = touches[i].force;
     each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
       if (side.on != Collider{Collider::Kind::solid, number}) return;
       for (int k = 0; k < side.local.corners(); ++k) r.col(side.nodes[k]) -= sign * weights[k] * force;
@@ -172,17 +172,24 @@ void FreeMotion::effector_motion(const SolidModel& model, const Model& whole, co
 }
 
 void FreeMotion::set_contact_rows(const linalg::SparseFactor::Rows& rows) {
-  contacts_.resize(rows.cols(), rows.rows());
+  reach_ = factor_->reach({rows.innerIndexPtr(), static_cast<std::size_t>(rows.nonZeros())});
+  contacts_.resize(static_cast<Eigen::Index>(reach_.size()), rows.rows());
   coupled_.resize(factor_->borders(), rows.rows());
+  half_.resize(rows.cols());
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     x_ = rows.row(i).transpose();
-    factor_->half_solve(x_, contacts_.col(i));
-    factor_->border_times(contacts_.col(i), coupled_.col(i));
+    factor_->half_solve(x_, half_);
+    factor_->border_times(half_, coupled_.col(i));
+    contacts_.col(i) = half_(reach_);
   }
 }
 
 Eigen::MatrixXd FreeMotion::contact_compliance() const {
-  return contacts_.transpose() * (factor_->signs().asDiagonal() * contacts_);
+  const Eigen::VectorXd signs = factor_->signs()(reach_);
+  if ((signs.array() < 0.0).any()) return contacts_.transpose() * (signs.asDiagonal() * contacts_);
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(contacts_.cols(), contacts_.cols());
+  D.selfadjointView<Eigen::Lower>().rankUpdate(contacts_.transpose());
+  return D.selfadjointView<Eigen::Lower>();
 }
 
 Eigen::VectorXd FreeMotion::coupled_motion(const SolidModel& model, const Model& whole,
@@ -195,7 +202,7 @@ Eigen::VectorXd FreeMotion::coupled_motion(const SolidModel& model, const Model&
 Eigen::VectorXd FreeMotion::contact_motion(const SolidModel& model, const Model& whole,
                                            const Eigen::VectorXd& dlambda) {
   const Eigen::VectorXd coupled = coupled_motion(model, whole, dlambda);
-  return coupled + contacts_.transpose() * factor_->signs().cwiseProduct(y_);
+  return coupled + contacts_.transpose() * factor_->signs().cwiseProduct(y_)(reach_);
 }
 
 void FreeMotion::push_contacts(const SolidModel& model, const Model& whole, const Eigen::VectorXd& forces,
@@ -206,7 +213,7 @@ void FreeMotion::push_contacts(const SolidModel& model, const Model& whole, cons
 }
 
 void FreeMotion::add_contact_forces(const Eigen::VectorXd& forces) {
-  y_ += contacts_ * forces;
+  y_(reach_) += contacts_ * forces;
   free_ += coupled_ * forces;
 }
 

@@ -72,7 +72,9 @@ class FreeMotion {
   std::vector<int> rim_;        ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;   ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
-  Eigen::MatrixXd contacts_, coupled_;  ///< R H_c^T, and H A^-1 H_c^T
+  std::vector<int> reach_;              ///< where rows of contacts may have entries
+  Eigen::MatrixXd contacts_, coupled_;  ///< R H_c^T there, and H A^-1 H_c^T
+  Eigen::VectorXd half_;
 };
 
 }  // namespace sinew

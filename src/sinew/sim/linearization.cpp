@@ -214,8 +214,11 @@ void Linearization::effector_motion(const Eigen::VectorXd& dlambda, bool pushed,
 
 void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate) {
   for (std::size_t i = 0; i < increment.dx.size(); ++i) iterate.solids[i].x += fraction * increment.dx[i];
-  for (std::size_t i = 0; i < increment.forces.contacts.size(); ++i)
-    iterate.contacts[i].force += fraction * increment.forces.contacts[i];
+  for (std::size_t i = 0; i < increment.forces.contacts.size(); ++i) {
+    const ContactChange::Force& own = increment.forces.contacts[i];
+    iterate.contacts[i].force = own.from + fraction * own.more;
+    iterate.contacts[i].normal = own.normal;
+  }
   for (std::size_t i = 0; i < increment.forces.frictions.size(); ++i)
     iterate.points[context.model.rubbing[i]].friction += fraction * increment.forces.frictions[i];
   advance_reduced(context, increment.reduced, fraction, iterate);

@@ -38,7 +38,8 @@ class Linearization {
   ContactRoom& contacts() { return contacts_; }
   /// [m] how far the forces of contacts are from what their laws ask for.
   double contact_error() const { return contact_forces_.error(*context_, *iterate_, contacts_); }
-  const solve::CoulombReport& contact_report() const { return contact_forces_.report(); }
+  /// The last problem of contacts that was solved.
+  const solve::CoulombProblem& contact_problem() const { return contact_forces_.problem(); }
 
   /// (10), (11): factors the volumes and the coupled problem. False with the name of what could not be. A volume by
   /// itself may be unstable where its couplings hold it (a compressed finger without its cable). Where the whole is,

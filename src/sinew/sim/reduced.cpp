@@ -91,21 +91,24 @@ void add_actuator(const StepContext& context, const State& iterate, std::size_t 
   reduced.violation = std::max(reduced.violation, std::abs(off) * arm);
 }
 
-/// Forces of contacts on a rod's surface.
+/// Forces of contacts on a rod: what presses it acts through its axis, friction at its surface.
 void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    const ContactState& own = rod.iterate().contacts[i];
-    each_side(touches[i],
-              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
-                if (side.on != Collider{Collider::Kind::rod, rod.number()}) return;
-                for (int k = 0; k < side.local.corners(); ++k) {
-                  const rod::Branch frame = rod::branch(rod.shape(), side.abscissae[k]);
-                  const Vec3 out = sign * -touches[i].nearest.normal * side.local.radius;
-                  rod.load({side.abscissae[k], frame.R.transpose() * out, -sign * weights[k] * own.force});
-                }
-                (void)at;
-                rod.reduced().scale = std::max(rod.reduced().scale, own.force.norm());
-              });
+    const Vec3 &force = touches[i].force, &n = touches[i].nearest.normal;
+    const Vec3 normal = n * n.dot(force), friction = force - normal;
+    each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
+      if (side.on != Collider{Collider::Kind::rod, rod.number()} || force.isZero(0.0)) return;
+      for (int k = 0; k < side.local.corners(); ++k) {
+        rod::PointLoad pressed{side.abscissae[k], Vec3::Zero(), -sign * weights[k] * normal};
+        const bool lone = side.local.corners() == 1;
+        if (lone && !touches[i].stiffness.isZero(0.0)) pressed.stiffness = &touches[i].stiffness;
+        rod.load(pressed);
+        const Vec3 out = sign * -n * side.local.radius;
+        rod.load({side.abscissae[k], rod::branch(rod.shape(), side.abscissae[k]).R.transpose() * out,
+                  -sign * weights[k] * friction});
+      }
+      rod.reduced().scale = std::max(rod.reduced().scale, force.norm());
+    });
   }
 }
 
@@ -125,10 +128,9 @@ void add_bodies(const StepContext& context, const State& iterate, const std::vec
     reduced.scale = std::max(reduced.scale, spin / model.arms[own.unknown + 3]);
   }
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    const ContactState& contact = iterate.contacts[i];
     each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>&, const Vec3& at, double sign) {
       if (side.on.kind != Collider::Kind::body) return;
-      const Vec3 force = sign * contact.force;
+      const Vec3 force = sign * touches[i].force;
       auto r = problem.r.segment<6>(model.bodies[side.on.number].unknown);
       r.head<3>() -= force;
       r.tail<3>() -= (at - iterate.bodies[side.on.number].p).cross(force);
