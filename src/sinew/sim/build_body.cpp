@@ -195,7 +195,7 @@ void build_pairs(Model& model) {
   if (model.scene.newton.precision == linalg::Precision::float32)
     reject("newton.precision", "single", "contact needs double precision", "leave `precision` out");
   if (model.scene.analysis != Analysis::dynamic)
-    reject("analysis", "", "contact is a matter of motion",
+    reject("analysis", "", "contact is computed in dynamic scenes alone",
            "write `analysis: dynamic`, and damping that brings it to rest; or `off: true` for pairs that never meet");
   for (RodModel& rod : model.rods) rod.touching = points_along(rod);
   for (SolidModel& solid : model.solids) prepare_surface(solid);

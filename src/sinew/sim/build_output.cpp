@@ -50,7 +50,7 @@ void of_a_pair(const Model& model, const Output& output, const std::string& path
     }
   }
   reject(where, output.between[0] + ", " + output.between[1], "do not stop each other",
-         "list the two under `contact: {pairs: ...}`");
+         "list the two under `contact: {pairs: ...}`, without `off: true`");
 }
 
 }  // namespace

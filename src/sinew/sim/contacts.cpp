@@ -214,7 +214,11 @@ void finish_contacts(const ContactRoom& room, State& next) {
     own.gap = touch.nearest.gap;
     own.slip = touch.u.tail<2>().norm();
   }
-  std::erase_if(next.contacts, [](const ContactState& own) { return !(own.force.dot(own.normal) > 0.0); });
+  // What the solver left of forces that went is not a contact.
+  double largest = 0.0;
+  for (const ContactState& own : next.contacts) largest = std::max(largest, own.force.dot(own.normal));
+  std::erase_if(next.contacts,
+                [largest](const ContactState& own) { return !(own.force.dot(own.normal) > 1e-12 * largest); });
 }
 
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room) {
