@@ -207,8 +207,8 @@ inline std::vector<ContactProblem> contact_problems() {
     take_problems("rods on a drum", logs(4, friction), 10, all);
     take_problems("heap of 12", heap(12, friction), 10, all);
     take_problems("wall of 20", wall(5, 4, friction), 6, all);
-    take_problems("heap of 30", heap(30, friction), 6, all);
-    take_problems("pile of 27", pile(3, 3, 3, friction), 5, all);
+    take_problems("heap of 20", heap(20, friction), 6, all);
+    take_problems("pile of 27", pile(3, 3, 3, friction), 8, all);
   }
   take_problems("pile of 48", pile(4, 4, 3, 0.5), 4, all);
   return all;
