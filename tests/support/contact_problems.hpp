@@ -78,7 +78,7 @@ inline Scene wall(int wide, int high, double friction) {
   return scene;
 }
 
-/// Balls, capsules and cylinders that fall into a pit.
+/// Balls, capsules and boxes that fall into a pit.
 inline Scene heap(int count, double friction) {
   Scene scene = heavy_floor(0.6);
   scene.contact.friction = friction;
@@ -182,15 +182,7 @@ inline int plain_sweeps(const solve::CoulombProblem& problem, double tolerance, 
   lambda.setZero(problem.b.size());
   int sweeps = 0;
   while (sweeps < most && solve::residual(problem, lambda).largest() > tolerance) {
-    for (int turn = 0; turn < 10; ++turn, ++sweeps) {
-      for (int i = 0; i < problem.contacts(); ++i) {
-        const auto k = 3 * i;
-        const Eigen::Matrix3d D = problem.D.block<3, 3>(k, k);
-        const Eigen::Vector3d own = lambda.segment<3>(k);
-        const Eigen::Vector3d b = problem.D.middleCols<3>(k).transpose() * lambda + problem.b.segment<3>(k) - D * own;
-        solve::solve_one(D, b, problem.mu[i], lambda.segment<3>(k));
-      }
-    }
+    for (int turn = 0; turn < 10; ++turn, ++sweeps) solve::sweep(problem, lambda);
   }
   return sweeps;
 }

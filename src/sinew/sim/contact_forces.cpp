@@ -26,51 +26,52 @@ void ContactForces::add_rows(const StepContext& context, const State& iterate, c
   touching_ = room.playing;
   for (int contact = 0; contact < static_cast<int>(touching_.size()); ++contact) {
     const Touch& touch = room.touches[touching_[contact]];
-    each_side(touch, [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
-      const Eigen::Matrix3d rows = sign * touch.frame.transpose();
-      switch (side.on.kind) {
-        case Kind::obstacle:
-          break;
-        case Kind::body: {
-          OnBody own{contact, model.bodies[side.on.number].unknown, Eigen::Matrix3Xd(3, 6)};
-          own.J << rows, -rows * lie::hat(at - iterate.bodies[side.on.number].p);
-          on_bodies_.push_back(own);
-          break;
-        }
-        case Kind::solid: {
-          const solid::Body& body = model.solids[side.on.number].body;
-          std::vector<int>& known = rows_of_[side.on.number];
-          if (known.empty() || known.back() != 3 * contact + 2) {
-            for (int r = 0; r < 3; ++r) known.push_back(3 * contact + r);
-          }
-          const auto first = static_cast<int>(known.size()) - 3;
-          for (int k = 0; k < side.local.corners(); ++k) {
-            for (int axis = 0; axis < 3; ++axis) {
-              const int unknown = body.unknown(axis, side.nodes[k]);
-              if (unknown < 0) continue;
-              for (int r = 0; r < 3; ++r)
-                entries[side.on.number].emplace_back(first + r, unknown, rows(r, axis) * weights[k]);
-            }
-          }
-          break;
-        }
-        case Kind::rod: {
-          const RodModel& rod = model.rods[side.on.number];
-          const rod::Configuration& shape = reduced.rods[side.on.number].shape;
-          const int nb = rod.rod.base_coordinates();
-          Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, nb + rod.rod.strain_coordinates());
-          const Vec3 out = sign * -touch.nearest.normal * side.local.radius;
-          for (int k = 0; k < side.local.corners(); ++k) {
-            const Vec3 offset = rod::branch(shape, side.abscissae[k]).R.transpose() * out;
-            J += weights[k] * rod::position_jacobian(shape, side.abscissae[k], offset);
-          }
-          J = (rows * J).eval();
-          if (nb > 0) on_bodies_.push_back({contact, rod.unknown, J.leftCols(nb)});
-          on_rods_.push_back({contact, side.on.number, J.rightCols(rod.rod.strain_coordinates())});
-          break;
-        }
-      }
-    });
+    each_side(iterate.contacts[touching_[contact]], touch,
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& at, double sign) {
+                const Eigen::Matrix3d rows = sign * touch.frame.transpose();
+                switch (side.on.kind) {
+                  case Kind::obstacle:
+                    break;
+                  case Kind::body: {
+                    OnBody own{contact, model.bodies[side.on.number].unknown, Eigen::Matrix3Xd(3, 6)};
+                    own.J << rows, -rows * lie::hat(at - iterate.bodies[side.on.number].p);
+                    on_bodies_.push_back(own);
+                    break;
+                  }
+                  case Kind::solid: {
+                    const solid::Body& body = model.solids[side.on.number].body;
+                    std::vector<int>& known = rows_of_[side.on.number];
+                    if (known.empty() || known.back() != 3 * contact + 2) {
+                      for (int r = 0; r < 3; ++r) known.push_back(3 * contact + r);
+                    }
+                    const auto first = static_cast<int>(known.size()) - 3;
+                    for (int k = 0; k < side.local.corners(); ++k) {
+                      for (int axis = 0; axis < 3; ++axis) {
+                        const int unknown = body.unknown(axis, side.nodes[k]);
+                        if (unknown < 0) continue;
+                        for (int r = 0; r < 3; ++r)
+                          entries[side.on.number].emplace_back(first + r, unknown, rows(r, axis) * weights[k]);
+                      }
+                    }
+                    break;
+                  }
+                  case Kind::rod: {
+                    const RodModel& rod = model.rods[side.on.number];
+                    const rod::Configuration& shape = reduced.rods[side.on.number].shape;
+                    const int nb = rod.rod.base_coordinates();
+                    Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, nb + rod.rod.strain_coordinates());
+                    const Vec3 out = sign * -touch.nearest.normal * side.local.radius;
+                    for (int k = 0; k < side.local.corners(); ++k) {
+                      const Vec3 offset = rod::branch(shape, side.abscissae[k]).R.transpose() * out;
+                      J += weights[k] * rod::position_jacobian(shape, side.abscissae[k], offset);
+                    }
+                    J = (rows * J).eval();
+                    if (nb > 0) on_bodies_.push_back({contact, rod.unknown, J.leftCols(nb)});
+                    on_rods_.push_back({contact, side.on.number, J.rightCols(rod.rod.strain_coordinates())});
+                    break;
+                  }
+                }
+              });
   }
   rubbing_.clear();
   for (const int k : model.rubbing) {

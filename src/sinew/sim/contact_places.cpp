@@ -30,7 +30,7 @@ contact::Simplex Moment::placed(const ContactSide& side) const {
         break;
     }
   }
-  if (side.on.kind == Kind::obstacle || side.on.kind == Kind::body) own.normal = pose(side.on).R * own.normal;
+  if (is_rigid(side.on)) own.normal = pose(side.on).R * own.normal;
   return own;
 }
 

@@ -231,8 +231,6 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
   for (std::size_t i = 0; i < room.touches.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
     Touch& touch = room.touches[i];
-    touch.a = own.a;
-    touch.b = own.b;
     const Simplex a = now.placed(own.a), b = now.placed(own.b);
     touch.nearest = contact::nearest(a, b, room.facings[i]);
     const Vec3& n = touch.nearest.normal;
@@ -243,8 +241,8 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     touch.point_a = surface_point(a, touch.nearest.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)
                                                    : surface_point(b, touch.nearest.b, n);
-    const Vec3 slip = (touch.point_a - was(touch.a, touch.nearest.a, touch.point_a, start, now)) -
-                      (touch.point_b - was(touch.b, touch.nearest.b, touch.point_b, start, now));
+    const Vec3 slip = (touch.point_a - was(own.a, touch.nearest.a, touch.point_a, start, now)) -
+                      (touch.point_b - was(own.b, touch.nearest.b, touch.point_b, start, now));
     touch.u = Vec3(touch.nearest.gap, slip.dot(touch.frame.col(1)), slip.dot(touch.frame.col(2)));
     const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), static_cast<int>(i));
     const bool plays = place != room.playing.end() && *place == static_cast<int>(i);

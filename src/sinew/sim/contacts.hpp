@@ -14,7 +14,6 @@ namespace sinew {
 /// A contact at an iterate: x_a - x_b are its material points, u = (gap, slip along the two tangents) what Signorini's
 /// and Coulomb's laws are about.
 struct Touch {
-  ContactSide a, b;
   contact::Nearest nearest;
   Eigen::Matrix3d frame;      ///< normal (from b to a) and two tangents, as columns
   Vec3 point_a, point_b;      ///< [m] on the two surfaces
@@ -49,9 +48,9 @@ void finish_contacts(const ContactRoom& room, State& next);
 /// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,
 /// -1 for what feels the opposite.
 template <class Visit>
-void each_side(const Touch& touch, const Visit& visit) {
-  visit(touch.a, touch.nearest.a, touch.point_a, 1.0);
-  visit(touch.b, touch.nearest.b, touch.point_b, -1.0);
+void each_side(const ContactState& contact, const Touch& touch, const Visit& visit) {
+  visit(contact.a, touch.nearest.a, touch.point_a, 1.0);
+  visit(contact.b, touch.nearest.b, touch.point_b, -1.0);
 }
 
 /// How far parts may be apart at the start of a step to be looked at [m].

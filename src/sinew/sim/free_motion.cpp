@@ -54,11 +54,12 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
   }
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Vec3& force = touches[i].force;
-    each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
-      if (side.on != Collider{Collider::Kind::solid, number}) return;
-      for (int k = 0; k < side.local.corners(); ++k) r.col(side.nodes[k]) -= sign * weights[k] * force;
-      forces.scale = std::max(forces.scale, force.norm());
-    });
+    each_side(iterate.contacts[i], touches[i],
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
+                if (side.on != Collider{Collider::Kind::solid, number}) return;
+                for (int k = 0; k < side.local.corners(); ++k) r.col(side.nodes[k]) -= sign * weights[k] * force;
+                forces.scale = std::max(forces.scale, force.norm());
+              });
   }
   solid::at_unknowns(body, r, forces.r);
   forces.reaction.resize(model.held());

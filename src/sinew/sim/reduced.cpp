@@ -96,19 +96,20 @@ void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Vec3 &force = touches[i].force, &n = touches[i].nearest.normal;
     const Vec3 normal = n * n.dot(force), friction = force - normal;
-    each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
-      if (side.on != Collider{Collider::Kind::rod, rod.number()} || force.isZero(0.0)) return;
-      for (int k = 0; k < side.local.corners(); ++k) {
-        rod::PointLoad pressed{side.abscissae[k], Vec3::Zero(), -sign * weights[k] * normal};
-        const bool lone = side.local.corners() == 1;
-        if (lone && !touches[i].stiffness.isZero(0.0)) pressed.stiffness = &touches[i].stiffness;
-        rod.load(pressed);
-        const Vec3 out = sign * -n * side.local.radius;
-        rod.load({side.abscissae[k], rod::branch(rod.shape(), side.abscissae[k]).R.transpose() * out,
-                  -sign * weights[k] * friction});
-      }
-      rod.reduced().scale = std::max(rod.reduced().scale, force.norm());
-    });
+    each_side(rod.iterate().contacts[i], touches[i],
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
+                if (side.on != Collider{Collider::Kind::rod, rod.number()} || force.isZero(0.0)) return;
+                for (int k = 0; k < side.local.corners(); ++k) {
+                  rod::PointLoad pressed{side.abscissae[k], Vec3::Zero(), -sign * weights[k] * normal};
+                  const bool lone = side.local.corners() == 1;
+                  if (lone && !touches[i].stiffness.isZero(0.0)) pressed.stiffness = &touches[i].stiffness;
+                  rod.load(pressed);
+                  const Vec3 out = sign * -n * side.local.radius;
+                  rod.load({side.abscissae[k], rod::branch(rod.shape(), side.abscissae[k]).R.transpose() * out,
+                            -sign * weights[k] * friction});
+                }
+                rod.reduced().scale = std::max(rod.reduced().scale, force.norm());
+              });
   }
 }
 
@@ -128,14 +129,15 @@ void add_bodies(const StepContext& context, const State& iterate, const std::vec
     reduced.scale = std::max(reduced.scale, spin / model.arms[own.unknown + 3]);
   }
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    each_side(touches[i], [&](const ContactSide& side, const std::array<double, 3>&, const Vec3& at, double sign) {
-      if (side.on.kind != Collider::Kind::body) return;
-      const Vec3 force = sign * touches[i].force;
-      auto r = problem.r.segment<6>(model.bodies[side.on.number].unknown);
-      r.head<3>() -= force;
-      r.tail<3>() -= (at - iterate.bodies[side.on.number].p).cross(force);
-      reduced.scale = std::max(reduced.scale, force.norm());
-    });
+    each_side(iterate.contacts[i], touches[i],
+              [&](const ContactSide& side, const std::array<double, 3>&, const Vec3& at, double sign) {
+                if (side.on.kind != Collider::Kind::body) return;
+                const Vec3 force = sign * touches[i].force;
+                auto r = problem.r.segment<6>(model.bodies[side.on.number].unknown);
+                r.head<3>() -= force;
+                r.tail<3>() -= (at - iterate.bodies[side.on.number].p).cross(force);
+                reduced.scale = std::max(reduced.scale, force.norm());
+              });
   }
 }
 

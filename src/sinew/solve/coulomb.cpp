@@ -140,7 +140,7 @@ bool solve_one(const Eigen::Matrix3d& D, const Eigen::Vector3d& b, double mu, Ei
   return false;
 }
 
-void Coulomb::sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda) {
+void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda) {
   for (int i = 0; i < problem.contacts(); ++i) {
     const auto k = 3 * i;
     const Eigen::Matrix3d D = problem.D.block<3, 3>(k, k);

@@ -33,6 +33,9 @@ CoulombResidual residual(const CoulombProblem& problem, const Eigen::VectorXd& l
 /// (friction so high that it jams); lambda is then unchanged.
 bool solve_one(const Eigen::Matrix3d& D, const Eigen::Vector3d& b, double mu, Eigen::Ref<Eigen::Vector3d> lambda);
 
+/// One sweep of block Gauss-Seidel: `solve_one` at each contact in turn, with the forces there are at the others.
+void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda);
+
 struct CoulombReport {
   bool solved = false;  ///< to the tolerance
   int sweeps = 0;       ///< of block Gauss-Seidel
@@ -49,7 +52,6 @@ class Coulomb {
   CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda);
 
  private:
-  void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda);
   double evaluate(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
   void derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, Eigen::Matrix3d& A,
               Eigen::Matrix3d& B) const;
