@@ -123,7 +123,7 @@ TEST_P(EveryKernel, SolvesAndCondensesAsTheMatrixWrittenOut) {
         EXPECT_EQ(factor.negative(),
                   (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues().array() < 0.0).count());
         const Eigen::MatrixXd W = H * lu.solve(Eigen::MatrixXd(H.transpose()));
-        factor.compliance(compliance);
+        compliance = factor.compliance();
         EXPECT_LT((compliance - W).norm(), 1e-10 * W.norm());
         factor.border_times(y, motion);
         EXPECT_LT((motion - H * x).norm(), 1e-10 * (H * x).norm());
@@ -161,8 +161,8 @@ TEST_P(EveryKernel, GivesWhatTheOthersGive) {
   const Eigen::VectorXd x = portable.solve(b);
   EXPECT_LT((own.solve(b) - x).norm(), 1e-12 * x.norm());
   Eigen::MatrixXd expected, found;
-  portable.compliance(expected);
-  own.compliance(found);
+  expected = portable.compliance();
+  found = own.compliance();
   EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
 }
 
@@ -177,7 +177,7 @@ TEST_P(EveryKernel, SinglePrecisionIsRefinedToDouble) {
     EXPECT_EQ(factor.negative(), 0);
     const Eigen::MatrixXd W = H * A.ldlt().solve(Eigen::MatrixXd(H.transpose()));
     Eigen::MatrixXd compliance;
-    factor.compliance(compliance);
+    compliance = factor.compliance();
     EXPECT_LT((compliance - W).norm(), 1e-3 * W.norm());
     EXPECT_GT((compliance - W).norm(), 1e-9 * W.norm());  // it is what it says
     const Eigen::VectorXd b = Eigen::VectorXd::Random(A.rows()), u = Eigen::VectorXd::Random(H.rows());
@@ -340,7 +340,7 @@ TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
   ASSERT_TRUE(alone.factor(A, H));
   const Eigen::VectorXd x = alone.solve(b);
   Eigen::MatrixXd W, own;
-  alone.compliance(W);
+  W = alone.compliance();
   EXPECT_LT((A.selfadjointView<Eigen::Lower>() * x - b).norm(), 1e-13 * b.norm());
   for (int i = 0; i < 3; ++i) {
     const Eigen::VectorXd motion = H * alone.solve(Eigen::VectorXd(H.row(i).transpose()));
@@ -351,7 +351,7 @@ TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
     SparseFactor factor(plan);
     for (int again = 0; again < 3; ++again) {
       ASSERT_TRUE(factor.factor(A, H, crew));
-      factor.compliance(own);
+      own = factor.compliance();
       EXPECT_EQ(own, W);
       EXPECT_EQ(factor.solve(b), x);
     }
@@ -395,7 +395,7 @@ TEST(Fronts, SlotsPutTheSameMatrixTogether) {
     nodes.subtract_product(x, r);
     EXPECT_LT((r - (b - dense(held.A) * x)).norm(), 1e-14 * b.norm());
     Eigen::MatrixXd W;
-    nodes.compliance(W);
+    W = nodes.compliance();
     const Eigen::MatrixXd H = held.H, expected = H * dense(held.A).llt().solve(Eigen::MatrixXd(H.transpose()));
     EXPECT_LT((W - expected).norm(), rounding * expected.norm());
   }

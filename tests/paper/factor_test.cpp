@@ -60,7 +60,7 @@ TEST(Factor, OfScenesHasSmallBackwardErrors) {
         (A * x - b).lpNorm<Eigen::Infinity>() / (norm * x.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>());
     EXPECT_LT(error, 1e-12);
     Eigen::MatrixXd W;
-    factor.compliance(W);
+    W = factor.compliance();
     // Beside a dense factor, refined. At a condition of 1e9 and more any factor is off by more than 1e-10: then no
     // further than a dense one by itself.
     const Eigen::MatrixXd H = solid.border;

@@ -15,8 +15,10 @@ namespace {
 
 Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
                           double* scale = nullptr) {
+  Deformation deformation;
+  deform(body, start, x, deformation);
   Residual own;
-  solid::residual(body, start, x, gravity, own);
+  solid::residual(body, start, x, deformation, gravity, own);
   if (scale) *scale = own.scale;
   return own.sum;
 }
@@ -63,8 +65,10 @@ Eigen::Matrix3Xd deformed(const Body& body, double size, const Vec3& turn = Vec3
 /// The tangent without the mass, over the coordinates of all nodes, held or not.
 Eigen::MatrixXd dense_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind) {
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * body.nodes(), 3 * body.nodes());
+  Deformation deformation;
+  deform(body, start, x, deformation);
   assemble_tangent(
-      body, start, x, kind,
+      body, start, x, deformation, kind,
       [&](int cell, const ElementMatrix& own) {
         const std::span<const int> at = body.cells[static_cast<std::size_t>(cell)].nodes();
         for (std::size_t a = 0; a < at.size(); ++a) {

@@ -48,6 +48,13 @@ class EveryTetKernel : public testing::TestWithParam<const char*> {
   const TetKernels* own = nullptr;
 };
 
+/// Vectors of nodes as the kernels want them.
+Eigen::Matrix4Xd padded(const Eigen::Matrix3Xd& x) {
+  Eigen::Matrix4Xd all = Eigen::Matrix4Xd::Zero(4, x.cols() + 1);
+  all.topLeftCorner(3, x.cols()) = x;
+  return all;
+}
+
 TEST_P(EveryTetKernel, GivesForcesAndTangentsOfTheElements) {
   const Body body = sample_body();
   ASSERT_EQ(body.batches.size(), 2u);
@@ -55,33 +62,46 @@ TEST_P(EveryTetKernel, GivesForcesAndTangentsOfTheElements) {
     for (const double rate : {0.0, 100.0}) {
       const Eigen::Matrix3Xd x0 = deformed(body, 0.05),
                              x = x0 + size * 0.01 * Eigen::Matrix3Xd::Random(3, body.nodes());
+      const Eigen::Matrix4Xd all_x = padded(x), motion = padded(x - x0);
       for (const TetBatch& batch : body.batches) {
-        TetForces forces;
-        TetStiffness stiffness;
+        TetFrames frames;
+        TetStiffness definite, exact;
         const unsigned all = (1U << batch.count) - 1U;
-        EXPECT_EQ(own->forces(batch, x.data(), x0.data(), rate, forces) & all, 0U);
-        EXPECT_EQ(own->stiffness(batch, x.data(), rate, stiffness) & all, 0U);
+        own->frames(batch, all_x.data(), frames);
+        EXPECT_EQ(frames.missing & all, 0U);
+        int node[4][kBatch];
+        for (int a = 0; a < 4; ++a) {
+          for (int i = 0; i < kBatch; ++i) node[a][i] = i < batch.count ? batch.node[a][i] : body.nodes();
+        }
+        Eigen::Matrix4Xd forces = padded(Eigen::Matrix3Xd::Zero(3, body.nodes())), viscous_forces = forces;
+        own->add_forces(batch, frames, motion.data(), rate, node, forces.data(), viscous_forces.data());
+        own->definite(batch, frames, rate, definite);
+        own->exact(batch, frames, motion.data(), rate, exact);
         for (int i = 0; i < batch.count; ++i) {
           const int e = batch.cell[i];
-          ElementResponse elastic, viscous;
-          evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::second, Tangent::definite,
-                   elastic);
-          viscous.force.setZero(3, 4);
-          viscous.stiffness.setZero(12, 12);
-          if (rate > 0.0)
-            add_viscosity(body.of(e).viscosity, rate, body.element(e), body.at_nodes(e, x0), body.at_nodes(e, x),
-                          Derivatives::second, Tangent::definite, viscous);
-          const Eigen::MatrixXd K = elastic.stiffness + viscous.stiffness;
-          for (int a = 0; a < 4; ++a) {
-            for (int axis = 0; axis < 3; ++axis) {
-              EXPECT_NEAR(forces.elastic[a][axis][i], elastic.force(axis, a), 1e-12 * elastic.force.norm() + 1e-13);
-              if (rate > 0.0)
-                EXPECT_NEAR(forces.viscous[a][axis][i], viscous.force(axis, a), 1e-11 * viscous.force.norm());
-            }
-            for (int b = 0; b <= a; ++b) {
-              for (int n = 0; n < 9; ++n)
-                EXPECT_NEAR(stiffness.block[a * (a + 1) / 2 + b][n][i], K(3 * a + n % 3, 3 * b + n / 3),
-                            1e-13 * K.norm());
+          for (const Tangent kind : {Tangent::definite, Tangent::exact}) {
+            ElementResponse elastic, viscous;
+            evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::second, kind, elastic);
+            viscous.force.setZero(3, 4);
+            viscous.stiffness.setZero(12, 12);
+            if (rate > 0.0)
+              add_viscosity(body.of(e).viscosity, rate, body.element(e), body.at_nodes(e, x0), body.at_nodes(e, x),
+                            Derivatives::second, kind, viscous);
+            const Eigen::MatrixXd K = elastic.stiffness + viscous.stiffness;
+            const TetStiffness& stiffness = kind == Tangent::exact ? exact : definite;
+            for (int a = 0; a < 4; ++a) {
+              for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_NEAR(forces(axis, batch.node[a][i]), elastic.force(axis, a),
+                            1e-12 * elastic.force.norm() + 1e-13);
+                if (rate > 0.0)
+                  EXPECT_NEAR(viscous_forces(axis, batch.node[a][i]), viscous.force(axis, a),
+                              1e-11 * viscous.force.norm());
+              }
+              for (int b = 0; b <= a; ++b) {
+                for (int n = 0; n < 9; ++n)
+                  EXPECT_NEAR(stiffness.block[a * (a + 1) / 2 + b][n][i], K(3 * a + n % 3, 3 * b + n / 3),
+                              1e-13 * K.norm());
+              }
             }
           }
         }
@@ -95,10 +115,9 @@ TEST_P(EveryTetKernel, LeavesOutWhatIsFlatOrInsideOut) {
   Eigen::Matrix3Xd x = deformed(body, 0.05);
   x.col(4 * 2) = (x.col(4 * 2 + 1) + x.col(4 * 2 + 2) + x.col(4 * 2 + 3)) / 3;  // flat
   x.col(4 * 5) += 3.0 * (x.col(4 * 5 + 1) - x.col(4 * 5));                      // inside out
-  TetForces forces;
-  TetStiffness stiffness;
-  EXPECT_EQ(own->forces(body.batches[0], x.data(), nullptr, 0.0, forces), 1U << 2 | 1U << 5);
-  EXPECT_EQ(own->stiffness(body.batches[0], x.data(), 0.0, stiffness), 1U << 2 | 1U << 5);
+  TetFrames frames;
+  own->frames(body.batches[0], padded(x).data(), frames);
+  EXPECT_EQ(frames.missing, 1U << 2 | 1U << 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(TetBatch, EveryTetKernel, testing::Values("portable", "avx2", "avx512"),

@@ -23,7 +23,7 @@ FrontPanels<Real>::FrontPanels(std::shared_ptr<const Fronts> plan, const Kernels
   pivots_.setZero(size());
   signs_.setOnes(size());
   int largest = kOwn;  // numbers that hold any front's unknowns
-  for (const Front& front : plan_->fronts) largest = std::max(largest, whole_lanes(front.rows(), kOwn) + kOwn);
+  for (const Front& front : plan_->fronts) largest = std::max(largest, whole_lanes(front.height(), kOwn) + kOwn);
   minus_W_.setZero(borders() > 0 ? whole_lanes(borders(), kOwn) + kOwn : 0, borders());
   own_.setZero(largest);
   below_ = own_;
@@ -33,21 +33,26 @@ FrontPanels<Real>::FrontPanels(std::shared_ptr<const Fronts> plan, const Kernels
 
 template <class Real>
 bool FrontPanels<Real>::factor(const std::vector<double>& values, const std::vector<double>& border_values,
-                               threads::Crew& crew) {
+                               threads::Crew& crew, const HalfSolve* right) {
   values_ = values.data();
   border_values_ = border_values.data();
-  return factor_fronts(crew);
+  return factor_fronts(crew, right);
 }
 
 template <class Real>
-bool FrontPanels<Real>::factor_fronts(threads::Crew& crew) {
-  minus_W_.setZero();
+bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* right) {
+  for (Eigen::Index j = 0; j < minus_W_.cols(); ++j) minus_W_.col(j).tail(minus_W_.rows() - j).setZero();
   while (rooms_.size() < std::min(static_cast<std::size_t>(crew.size()), plan_->parts.size()))
     rooms_.emplace_back(plan_->part_updates + kLanesOf<Real>);
-  if (crew.size() == 1) {  // updates are added while they are in the caches
+  if (crew.size() == 1) {  // updates are added, and the right side is solved, while numbers are in the caches
     Real* const room = rooms_.empty() ? nullptr : rooms_.front().data();
-    return std::all_of(plan_->fronts.begin(), plan_->fronts.end(),
-                       [&](const Front& front) { return factor_front(front, room, crew); });
+    if (right) begin(*right);
+    for (const Front& front : plan_->fronts) {
+      if (!factor_front(front, room, crew)) return false;
+      if (right) eliminate(front, *right);
+    }
+    if (right) end(*right);
+    return true;
   }
   // No border row reaches two parts: each writes its own columns of W.
   std::atomic<bool> ok = true;
@@ -68,6 +73,7 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew) {
   for (const int s : plan_->top) {
     if (!ok || !factor_front(plan_->fronts[static_cast<std::size_t>(s)], nullptr, crew)) return false;
   }
+  if (ok && right) half_solve(*right);
   return ok;
 }
 
@@ -166,62 +172,84 @@ void FrontPanels<Real>::add_children(const Front& front, Real* room, bool to_pan
 }
 
 template <class Real>
-void FrontPanels<Real>::half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const {
-  for (int i = 0; i < size(); ++i) y[plan_->place[i]] = b[i];
-  for (const Front& front : plan_->fronts) {
-    if ((y.segment(front.first, front.columns).array() == 0.0).all()) continue;  // nothing leads here
-    const Real* panel = panels_.data() + front.panel;
-    own_.head(front.columns) = y.segment(front.first, front.columns).template cast<Real>();
-    kernels_->solve(panel, front.stride, front.columns, own_.data());
-    y.segment(front.first, front.columns) = own_.head(front.columns).template cast<double>();
-    below_.head(whole_lanes(front.below, kLanesOf<Real>)).setZero();
-    kernels_->multiply(panel + front.columns, front.stride, front.below, front.columns, own_.data(), below_.data());
-    const std::span<const int> rows = plan_->rows_below(front);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      y[rows[i]] += static_cast<double>(below_[static_cast<Eigen::Index>(i)]);
-  }
+void FrontPanels<Real>::half_solve(const HalfSolve& right) const {
+  begin(right);
+  for (const Front& front : plan_->fronts) eliminate(front, right);
+  end(right);
 }
 
 template <class Real>
-void FrontPanels<Real>::back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const {
+void FrontPanels<Real>::begin(const HalfSolve& right) const {
+  right.y.resize(size());
+  for (int i = 0; i < size(); ++i) right.y[plan_->place[i]] = right.b[i];
+  bordering_.setZero();
+}
+
+/// A front's part of it: its own y, and what they leave to the rows below and to u.
+template <class Real>
+void FrontPanels<Real>::eliminate(const Front& front, const HalfSolve& right) const {
+  auto y = right.y.segment(front.first, front.columns);
+  if ((y.array() == 0.0).all()) return;  // nothing leads here
+  const Real* panel = panels_.data() + front.panel;
+  own_.head(front.columns) = y.template cast<Real>();
+  kernels_->solve(panel, front.stride, front.columns, own_.data());
+  y = own_.head(front.columns).template cast<double>();
+  const int height = front.below + (right.u ? front.borders : 0);
+  below_.head(whole_lanes(height, kLanesOf<Real>)).setZero();
+  kernels_->multiply(panel + front.columns, front.stride, height, front.columns, own_.data(), below_.data());
+  const std::span<const int> rows = plan_->rows_below(front);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    right.y[rows[i]] += static_cast<double>(below_[static_cast<Eigen::Index>(i)]);
+  if (right.u) bordering_.segment(front.border, front.borders) += below_.segment(front.below, front.borders);
+}
+
+template <class Real>
+void FrontPanels<Real>::end(const HalfSolve& right) const {
+  if (!right.u) return;
+  right.u->resize(borders());
+  for (int i = 0; i < borders(); ++i) (*right.u)[i] = -static_cast<double>(bordering_[plan_->border[i]]);
+}
+
+template <class Real>
+void FrontPanels<Real>::back_solve(const Eigen::VectorXd& y, const Eigen::VectorXd* u, Eigen::VectorXd& x) const {
   whole_ = signs_.cwiseProduct(y.template cast<Real>());
+  for (int i = 0; u && i < borders(); ++i) bordering_[plan_->border[i]] = static_cast<Real>(-(*u)[i]);
   for (auto front = plan_->fronts.rbegin(); front != plan_->fronts.rend(); ++front) {
     const Real* panel = panels_.data() + front->panel;
     const std::span<const int> rows = plan_->rows_below(*front);
     for (std::size_t i = 0; i < rows.size(); ++i) below_[static_cast<Eigen::Index>(i)] = whole_[rows[i]];
+    if (u) below_.segment(front->below, front->borders) = bordering_.segment(front->border, front->borders);
     Real* own = whole_.data() + front->first;
-    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below, front->columns, below_.data(),
-                                  own);
+    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below + (u ? front->borders : 0),
+                                  front->columns, below_.data(), own);
     kernels_->solve_transposed(panel, front->stride, front->columns, own);
   }
+  x.resize(size());
   for (int i = 0; i < size(); ++i) x[i] = static_cast<double>(whole_[plan_->place[i]]);
 }
 
 template <class Real>
-void FrontPanels<Real>::compliance(Eigen::MatrixXd& W) const {
-  W.resize(borders(), borders());
-  for (int j = 0; j < borders(); ++j) {
-    for (int i = 0; i <= j; ++i) {
-      const auto [column, row] = std::minmax({plan_->border[i], plan_->border[j]});
-      W(j, i) = W(i, j) = -static_cast<double>(minus_W_(row, column));
-    }
-  }
+void FrontPanels<Real>::kept_compliance(Eigen::MatrixXd& W) const {
+  const Eigen::Index n = borders();
+  W.resize(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    W.col(j).tail(n - j) = -minus_W_.col(j).segment(j, n - j).template cast<double>();
 }
 
 template <class Real>
-void FrontPanels<Real>::border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const {
+void FrontPanels<Real>::border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const {
   bordering_.setZero();
   for (const Front& front : plan_->fronts) {
     const Real* border = panels_.data() + front.panel + front.rows();
     own_.head(front.columns) = y.segment(front.first, front.columns).template cast<Real>();
     kernels_->multiply(border, front.stride, front.borders, front.columns, own_.data(), &bordering_[front.border]);
   }
+  u.resize(borders());
   for (int i = 0; i < borders(); ++i) u[i] = -static_cast<double>(bordering_[plan_->border[i]]);
 }
 
 template <class Real>
-void FrontPanels<Real>::add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u,
-                                              Eigen::Ref<Eigen::VectorXd> y) const {
+void FrontPanels<Real>::add_border_transposed(const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
   for (int i = 0; i < borders(); ++i) bordering_[plan_->border[i]] = static_cast<Real>(-u[i]);
   whole_.setZero();
   for (const Front& front : plan_->fronts) {

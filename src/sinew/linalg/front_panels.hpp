@@ -12,6 +12,13 @@
 
 namespace sinew::linalg {
 
+/// A right side b on its way through the first half of a solve: y = R b and, if wanted, u = H R^T S y = H A^-1 b.
+struct HalfSolve {
+  const Eigen::VectorXd& b;
+  Eigen::VectorXd& y;
+  Eigen::VectorXd* u = nullptr;
+};
+
 /// What SparseFactor does with each kind of number (float, double); all that is given and taken is double.
 template <class Real>
 class FrontPanels {
@@ -20,7 +27,9 @@ class FrontPanels {
   FrontPanels(std::shared_ptr<const Fronts> plan, const KernelsOf<Real>& kernels);
 
   /// `values`, `border_values`: as Fronts places them. False where a pivot is zero or not finite.
-  bool factor(const std::vector<double>& values, const std::vector<double>& border_values, threads::Crew& crew);
+  /// `right` is half solved on the way.
+  bool factor(const std::vector<double>& values, const std::vector<double>& border_values, threads::Crew& crew,
+              const HalfSolve* right);
   static double rounding() { return static_cast<double>(std::numeric_limits<Real>::epsilon()); }
   /// Its size.
   double smallest_pivot() const { return static_cast<double>(pivots_.cwiseAbs().minCoeff()); }
@@ -28,11 +37,11 @@ class FrontPanels {
   const Eigen::VectorXd& diagonal() const { return diagonal_; }  ///< of A, its size, in the order of elimination
   Eigen::VectorXd signs() const { return signs_.template cast<double>(); }
 
-  void half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const;
-  void back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const;
-  void compliance(Eigen::MatrixXd& W) const;
-  void border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const;
-  void add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::Ref<Eigen::VectorXd> y) const;
+  void half_solve(const HalfSolve& right) const;
+  void back_solve(const Eigen::VectorXd& y, const Eigen::VectorXd* u, Eigen::VectorXd& x) const;
+  void kept_compliance(Eigen::MatrixXd& W) const;
+  void border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const;
+  void add_border_transposed(const Eigen::VectorXd& u, Eigen::VectorXd& y) const;
 
  private:
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
@@ -40,7 +49,10 @@ class FrontPanels {
 
   int size() const { return static_cast<int>(plan_->place.size()); }
   int borders() const { return static_cast<int>(plan_->border.size()); }
-  bool factor_fronts(threads::Crew& crew);
+  bool factor_fronts(threads::Crew& crew, const HalfSolve* right);
+  void begin(const HalfSolve& right) const;
+  void eliminate(const Front& front, const HalfSolve& right) const;
+  void end(const HalfSolve& right) const;
   void start_panel(const Front& front);
   bool factor_front(const Front& front, Real* room, threads::Crew& crew);
   Real* update_of(const Front& front, Real* room) { return (front.in_part ? room : updates_.data()) + front.update; }

@@ -25,32 +25,40 @@ constexpr int kAcross = SINEW_LANES;
 
 struct Product {
   const Real *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
-  int stride, depth;
-  const Real* signs;
+  int A_stride, B_stride, depth;
+  const Real* signs;           ///< S; null: those of B are in it already
   Real sign = Real(1);         ///< of all, where they are alike
   const int* begin = nullptr;  ///< of each kLanes rows of A the first column that is not zero; null: all from 0
   int least_begin = 0;         ///< and of the rows of B
+  int before = 0;              ///< columns that were left out before the first
 
+  /// Its columns `first` .. before first + count.
+  Product part(int first, int count) const {
+    Product own = *this;
+    own.A += static_cast<long>(first) * A_stride;
+    own.B += static_cast<long>(first) * B_stride;
+    if (signs) own.signs += first;
+    own.before += first;
+    own.depth = count;
+    return own;
+  }
   /// That of `rows` rows from `row` on, without the columns that are zero in all of them.
   Product from(int row, int rows) const {
     Product own = *this;
     own.A += row;
     if (!begin) return own;
-    int first = depth;
+    int first = before + depth;
     for (int block = row / kLanes; block * kLanes < row + rows; ++block)
       first = begin[block] < first ? begin[block] : first;
-    if (first < least_begin) first = least_begin;
+    first = (first < least_begin ? least_begin : first) - before;
+    if (first < 0) first = 0;
     if (first > depth) first = depth;
-    own.A += static_cast<long>(first) * stride;
-    own.B += static_cast<long>(first) * stride;
-    own.signs += first;
-    own.depth -= first;
-    return own;
+    return own.part(first, depth - first);
   }
 };
 
 /// C <- C - A S B^T or -A S B^T, for one tile.
-template <int down, int across, bool turned>
+template <int down, int across>
 void tile(Real* C, int stride, const Product& product, bool fresh) {
   Lanes sum[across][down];
 #pragma GCC unroll 8
@@ -59,15 +67,14 @@ void tile(Real* C, int stride, const Product& product, bool fresh) {
     for (int i = 0; i < down; ++i) sum[j][i] = Lanes{};
   }
   const Real *A = product.A, *B = product.B;
-  for (int k = 0; k < product.depth; ++k, A += product.stride, B += product.stride) {
+  for (int k = 0; k < product.depth; ++k, A += product.A_stride, B += product.B_stride) {
     Lanes a[down];
 #pragma GCC unroll 8
     for (int i = 0; i < down; ++i) a[i] = load(A + kWidth * i);
 #pragma GCC unroll 8
     for (int j = 0; j < across; ++j) {
-      const Real b = turned ? B[j] * product.signs[k] : B[j];
 #pragma GCC unroll 8
-      for (int i = 0; i < down; ++i) sum[j][i] -= a[i] * b;
+      for (int i = 0; i < down; ++i) sum[j][i] -= a[i] * B[j];
     }
   }
 #pragma GCC unroll 8
@@ -75,20 +82,20 @@ void tile(Real* C, int stride, const Product& product, bool fresh) {
     Real* c = C + static_cast<long>(j) * stride;
 #pragma GCC unroll 8
     for (int i = 0; i < down; ++i) {
-      const Lanes own = turned ? sum[j][i] : sum[j][i] * product.sign;
+      const Lanes own = sum[j][i] * product.sign;
       store(c + kWidth * i, fresh ? own : load(c + kWidth * i) + own);
     }
   }
 }
 
 /// The same for the rows `top` .. before `height`, to whole registers, of `across` columns.
-template <int across, bool turned>
+template <int across>
 void strip(Real* C, int stride, const Product& product, int top, int height, bool fresh) {
   int row = top;
   const auto tiles = [&]<int down>() {
     for (; row + kWidth * (down - 1) < height; row += kWidth * down) {
       const Product own = product.from(row, kWidth * down);
-      if (own.depth > 0 || fresh) tile<down, across, turned>(C + row, stride, own, fresh);
+      if (own.depth > 0 || fresh) tile<down, across>(C + row, stride, own, fresh);
     }
   };
   tiles.template operator()<kDown>();
@@ -99,17 +106,26 @@ void strip(Real* C, int stride, const Product& product, int top, int height, boo
 constexpr int kChunk = 240, kDepth = 256;
 static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
 
-/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`.
-template <bool turned>
+/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`; signs that differ go into a copy of
+/// the few rows of B.
 void update_rows(Real* C, int C_stride, const Product& product, int top, int height, int columns, bool fresh) {
   int j = 0;
+  Real signed_B[kDepth * kAcross];
   const auto strips = [&]<int across>() {
     for (; j + across <= columns && j < height; j += across) {
       Product own = product;
       own.B += j;
+      if (own.signs) {
+        for (int k = 0; k < own.depth; ++k) {
+          for (int i = 0; i < across; ++i)
+            signed_B[k * across + i] = own.B[static_cast<long>(k) * own.B_stride + i] * own.signs[k];
+        }
+        own.B = signed_B;
+        own.B_stride = across;
+        own.signs = nullptr;
+      }
       const int first = j / kWidth * kWidth;
-      strip<across, turned>(C + static_cast<long>(j) * C_stride, C_stride, own, first > top ? first : top, height,
-                            fresh);
+      strip<across>(C + static_cast<long>(j) * C_stride, C_stride, own, first > top ? first : top, height, fresh);
     }
   };
   strips.template operator()<kAcross>();
@@ -118,38 +134,28 @@ void update_rows(Real* C, int C_stride, const Product& product, int top, int hei
   strips.template operator()<1>();
 }
 
-template <bool turned>
-void rank_update(Real* C, int C_stride, const Product& product, int height, int columns, bool fresh) {
-  if (product.begin || height <= 2 * kChunk) {
-    update_rows<turned>(C, C_stride, product, 0, height, columns, fresh);
-    return;
-  }
-  for (int k = 0; k < product.depth; k += kDepth) {
-    Product own = product;
-    own.A += static_cast<long>(k) * own.stride;
-    own.B = own.A;
-    own.signs += k;
-    own.depth = product.depth - k < kDepth ? product.depth - k : kDepth;
-    for (int top = 0; top < height; top += kChunk)
-      update_rows<turned>(C, C_stride, own, top, top + kChunk < height ? top + kChunk : height, columns,
-                          fresh && k == 0);
-  }
-}
-
+/// Signs differ rarely: where an indefinite matrix changes its sign.
 void update(Real* C, int C_stride, Product product, int height, int columns, bool fresh) {
-  bool mixed = false;  // rarely: where an indefinite matrix changes its sign
+  bool mixed = false;
   for (int k = 1; k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
-  product.sign = product.depth > 0 ? product.signs[0] : Real(1);
-  if (mixed) {
-    rank_update<true>(C, C_stride, product, height, columns, fresh);
-  } else {
-    rank_update<false>(C, C_stride, product, height, columns, fresh);
+  if (!mixed) {
+    product.sign = product.depth > 0 ? product.signs[0] : Real(1);
+    product.signs = nullptr;
   }
+  const bool large = !product.begin && height > 2 * kChunk;
+  const int deep = mixed || large ? kDepth : product.depth, high = large ? kChunk : height;
+  int k = 0;
+  do {
+    const Product own = product.part(k, product.depth - k < deep ? product.depth - k : deep);
+    for (int top = 0; top < height; top += high)
+      update_rows(C, C_stride, own, top, top + high < height ? top + high : height, columns, fresh && k == 0);
+    k += deep;
+  } while (k < product.depth);
 }
 
 void update(Real* C, int C_stride, const Real* A, int A_stride, int height, int columns, int depth, const Real* signs,
             bool fresh) {
-  update(C, C_stride, Product{A, A, A_stride, depth, signs}, height, columns, fresh);
+  update(C, C_stride, Product{A, A, A_stride, A_stride, depth, signs}, height, columns, fresh);
 }
 
 constexpr int kBlock = 8;  ///< columns of a panel that are factored together
@@ -204,7 +210,7 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
     const int count = columns - first < kBlock ? columns - first : kBlock;
     Real* block = panel + static_cast<long>(first) * stride + first;
     if (first > 0) {
-      Product before{panel + first, panel + first, stride, first, signs};
+      Product before{panel + first, panel + first, stride, stride, first, signs};
       if (profile.begin) {
         before.begin = profile.begin + first / kLanes;
         before.least_begin = *before.begin;
@@ -258,29 +264,46 @@ bool factor_profile(Real* panel, int stride, int columns, const int* begin, cons
   return factor_panel(panel, stride, columns, columns, Profile{begin, least}, pivots, signs);
 }
 
-/// to <- to + from, with registers of ever smaller size.
+/// to <- to + from for `tail` numbers, fewer than two registers of `width`.
 template <int width>
-void add_run(const Real* from, Real* to, int length) {
+[[gnu::always_inline]] inline void add_tail(const Real* from, Real* to, int tail) {
   using Part [[gnu::vector_size(sizeof(Real) * width), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
-  int i = 0;
-  for (; i + width <= length; i += width) *reinterpret_cast<Part*>(to + i) += *reinterpret_cast<const Part*>(from + i);
+  if (tail & width) {
+    *reinterpret_cast<Part*>(to) += *reinterpret_cast<const Part*>(from);
+    from += width;
+    to += width;
+  }
   if constexpr (width > 2) {
-    add_run<width / 2>(from + i, to + i, length - i);
+    add_tail<width / 2>(from, to, tail);
   } else {
-    if (i < length) to[i] += from[i];
+    if (tail & 1) *to += *from;
   }
 }
 
+/// A rectangle. Its columns are all alike, so that the processor knows what comes.
+void add_rectangle(const Real* from, int from_stride, Real* to, int to_stride, int rows, int columns) {
+  const int whole = rows / kWidth * kWidth, tail = rows - whole;
+  for (int j = 0; j < columns; ++j, from += from_stride, to += to_stride) {
+    for (int i = 0; i < whole; i += kWidth) store(to + i, load(to + i) + load(from + i));
+    if (tail > 0) add_tail<(kWidth > 2 ? kWidth / 2 : 2)>(from + whole, to + whole, tail);
+  }
+}
+
+// Run by run of columns, run by run of rows. Above the diagonal numbers without meaning go where nobody reads.
 void add(const Real* from, int from_stride, int first, int end, const Run* runs, int count, Real* to, int to_stride,
          int shift) {
-  int at = 0;  // the run of column j
-  for (int j = first; j < end; ++j) {
-    while (runs[at].row + runs[at].length <= j) ++at;
-    const Real* own = from + static_cast<long>(j) * from_stride;
-    const int into = runs[at].into + j - runs[at].row;
-    Real* column = to + static_cast<long>(into - shift) * to_stride - shift;
-    add_run<kWidth>(own + j, column + into, runs[at].row + runs[at].length - j);
-    for (int k = at + 1; k < count; ++k) add_run<kWidth>(own + runs[k].row, column + runs[k].into, runs[k].length);
+  for (int at = 0; at < count && runs[at].row < end; ++at) {
+    const int own_first = runs[at].row > first ? runs[at].row : first;
+    const int own_end = runs[at].row + runs[at].length < end ? runs[at].row + runs[at].length : end;
+    if (own_first >= own_end) continue;
+    const Real* own = from + static_cast<long>(own_first) * from_stride;
+    Real* column = to + static_cast<long>(runs[at].into + own_first - runs[at].row - shift) * to_stride - shift;
+    // What is beside the diagonal.
+    add_rectangle(own + own_first, from_stride, column + runs[at].into + own_first - runs[at].row, to_stride,
+                  runs[at].row + runs[at].length - own_first, own_end - own_first);
+    for (int k = at + 1; k < count; ++k)
+      add_rectangle(own + runs[k].row, from_stride, column + runs[k].into, to_stride, runs[k].length,
+                    own_end - own_first);
   }
 }
 

@@ -8,7 +8,9 @@ namespace sinew::linalg {
 
 bool runs_here(std::string_view name) {
 #ifdef SINEW_X86_KERNELS
-  if (name == "avx512") return __builtin_cpu_supports("avx512f");
+  if (name == "avx512")
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma");
   if (name == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #endif
   return name == "portable";

@@ -99,11 +99,11 @@ bool SparseFactor::factor(const Matrix& A, const Rows& border, threads::Crew& cr
   return factor(crew);
 }
 
-bool SparseFactor::factor(threads::Crew& crew) {
+bool SparseFactor::factor(threads::Crew& crew, const HalfSolve* right) {
   if (size() == 0) return true;
   return std::visit(
       [&](auto& panels) {
-        if (!panels.factor(values_, border_values_, crew)) return false;
+        if (!panels.factor(values_, border_values_, crew, right)) return false;
         negative_ = panels.negative();
         const double vanished = panels.rounding() * (plan_->precision == Precision::float64 ? kRoundings : kRefined);
         return panels.smallest_pivot() > vanished * panels.diagonal().maxCoeff() || scaled_condition() * vanished < 1.0;
@@ -135,8 +135,12 @@ double SparseFactor::scaled_condition() const {
   return growth;
 }
 
-void SparseFactor::half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const {
-  std::visit([&](const auto& panels) { panels.half_solve(b, y); }, panels_);
+void SparseFactor::half_solve(const Eigen::VectorXd& b, Eigen::VectorXd& y) const {
+  std::visit([&](const auto& panels) { panels.half_solve({b, y}); }, panels_);
+}
+
+void SparseFactor::half_solve(const Eigen::VectorXd& b, Eigen::VectorXd& y, Eigen::VectorXd& u) const {
+  std::visit([&](const auto& panels) { panels.half_solve({b, y, &u}); }, panels_);
 }
 
 std::vector<int> SparseFactor::reach(std::span<const int> unknowns) const {
@@ -154,25 +158,35 @@ std::vector<int> SparseFactor::reach(std::span<const int> unknowns) const {
   return places;
 }
 
-void SparseFactor::back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const {
-  std::visit([&](const auto& panels) { panels.back_solve(y, x); }, panels_);
+void SparseFactor::back_solve(const Eigen::VectorXd& y, Eigen::VectorXd& x) const {
+  std::visit([&](const auto& panels) { panels.back_solve(y, nullptr, x); }, panels_);
 }
 
-void SparseFactor::compliance(Eigen::MatrixXd& W) const {
-  std::visit([&](const auto& panels) { panels.compliance(W); }, panels_);
+void SparseFactor::back_solve(const Eigen::VectorXd& y, const Eigen::VectorXd& u, Eigen::VectorXd& x) const {
+  std::visit([&](const auto& panels) { panels.back_solve(y, &u, x); }, panels_);
 }
 
-void SparseFactor::border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const {
+void SparseFactor::kept_compliance(Eigen::MatrixXd& W) const {
+  std::visit([&](const auto& panels) { panels.kept_compliance(W); }, panels_);
+}
+
+Eigen::MatrixXd SparseFactor::compliance() const {
+  Eigen::MatrixXd kept;
+  kept_compliance(kept);
+  const Eigen::VectorXi at = Eigen::VectorXi::Map(plan_->border.data(), borders());
+  return Eigen::MatrixXd(kept.selfadjointView<Eigen::Lower>())(at, at);
+}
+
+void SparseFactor::border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const {
   std::visit([&](const auto& panels) { panels.border_times(y, u); }, panels_);
 }
 
-void SparseFactor::add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u,
-                                         Eigen::Ref<Eigen::VectorXd> y) const {
+void SparseFactor::add_border_transposed(const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
   std::visit([&](const auto& panels) { panels.add_border_transposed(u, y); }, panels_);
 }
 
-Eigen::VectorXd SparseFactor::solve(const Eigen::Ref<const Eigen::VectorXd>& b) const {
-  Eigen::VectorXd y(size()), x(size());
+Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& b) const {
+  Eigen::VectorXd y, x;
   half_solve(b, y);
   back_solve(y, x);
   return x;

@@ -48,8 +48,9 @@ class SparseFactor {
   /// A as it has been put together.
   Matrix assembled() const;
   /// False if rounding is all that is left of a pivot, or it is not finite; solves are then meaningless.
-  /// The result is the same to the last bit, whatever the crew.
-  bool factor(threads::Crew& crew = threads::Crew::none());
+  /// The result is the same to the last bit, whatever the crew. What stands on the `right` is half solved on the way,
+  /// while the factor is in the caches.
+  bool factor(threads::Crew& crew = threads::Crew::none(), const HalfSolve* right = nullptr);
   /// All of it, for matrices of the plan's patterns.
   bool factor(const Matrix& A, const Rows& border = {}, threads::Crew& crew = threads::Crew::none());
 
@@ -67,21 +68,27 @@ class SparseFactor {
   void subtract_product(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> r) const;
   /// y = R b: with X made of such columns, B^T A^-1 B = X^T S X. Of a sparse b, costs little beside the fronts from its
   /// unknowns to the root.
-  void half_solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> y) const;
+  void half_solve(const Eigen::VectorXd& b, Eigen::VectorXd& y) const;
+  /// And u = H A^-1 b.
+  void half_solve(const Eigen::VectorXd& b, Eigen::VectorXd& y, Eigen::VectorXd& u) const;
   /// Where such y can differ from zero: places in the order of elimination, ascending, on the way from these unknowns
   /// to the root.
   std::vector<int> reach(std::span<const int> unknowns) const;
   /// x = R^T S y: the second half of A^-1 b.
-  void back_solve(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> x) const;
+  void back_solve(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
+  /// That of A^-1 (b + H^T u).
+  void back_solve(const Eigen::VectorXd& y, const Eigen::VectorXd& u, Eigen::VectorXd& x) const;
   /// x = A^-1 b.
-  Eigen::VectorXd solve(const Eigen::Ref<const Eigen::VectorXd>& b) const;
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
 
   /// W = H A^-1 H^T, in the order of the rows.
-  void compliance(Eigen::MatrixXd& W) const;
+  Eigen::MatrixXd compliance() const;
+  /// Its lower triangle in the order in which they are kept, Fronts::border; the rest is left as it is.
+  void kept_compliance(Eigen::MatrixXd& W) const;
   /// u = H R^T S y: H A^-1 b for y = R b.
-  void border_times(const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> u) const;
+  void border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const;
   /// y += R H^T u.
-  void add_border_transposed(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::Ref<Eigen::VectorXd> y) const;
+  void add_border_transposed(const Eigen::VectorXd& u, Eigen::VectorXd& y) const;
 
  private:
   using Panels = std::variant<FrontPanels<double>, FrontPanels<float>>;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "sinew/sim/clock.hpp"
@@ -28,7 +29,9 @@ bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || 
 void solid_forces(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, int number,
                   SolidForces& forces) {
   const solid::Body& body = context.model.solids[number].body;
-  solid::residual(body, context.solids[number], iterate.solids[number].x, context.gravity, forces.nodal);
+  solid::deform(body, context.solids[number], iterate.solids[number].x, forces.deformation);
+  solid::residual(body, context.solids[number], iterate.solids[number].x, forces.deformation, context.gravity,
+                  forces.nodal);
   forces.scale = forces.nodal.scale;
   Eigen::Matrix3Xd& r = forces.nodal.sum;
   const SolidModel& model = context.model.solids[number];
@@ -70,10 +73,10 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
   forces.largest = r.colwise().norm().maxCoeff();
 }
 
-bool FreeMotion::factor(const StepContext& context, const State& iterate, int number, solid::Tangent kind,
-                        threads::Crew& crew, StageTimes& times, solve::VolumePart& volume) {
+bool FreeMotion::factor(const StepContext& context, const State& iterate, int number, const SolidForces& forces,
+                        solid::Tangent kind, threads::Crew& crew, StageTimes& times, solve::VolumePart& volume) {
   const SolidModel& model = context.model.solids[number];
-  if (!factor_) factor_.emplace(model.fronts);
+  if (!factor_) plan(model);
   {
     const Clock clock(times.assembly);
     factor_->clear();
@@ -86,7 +89,7 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
     }
     for (int at = model.border.outerIndexPtr()[3 * model.rows.size()]; at < model.border.nonZeros(); ++at)
       factor_->border_values()[at] = model.border.valuePtr()[at];
-    assemble(model, context.solids[number], iterate.solids[number].x, kind, values);
+    assemble(model, context.solids[number], iterate.solids[number].x, forces.deformation, kind, values);
     if (kind == solid::Tangent::exact) {
       each_load(context, number, [&](const SolidLoadModel& load, double factor) {
         add_pressure_tangent(load, factor, iterate.solids[number].x, values);
@@ -95,24 +98,44 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   }
   {
     const Clock clock(times.factor);
-    if (!factor_->factor(crew)) return false;
+    push_ = -forces.r;
+    const linalg::HalfSolve right{push_, pushed_, &moved_};
+    if (!factor_->factor(crew, &right)) return false;
   }
   const Clock clock(times.compliance);
   volume.at.clear();
-  for (const int row : model.rows) {
-    for (int i = 0; i < 3; ++i) volume.at.push_back(context.model.solid_rows[row].row + i);
-  }
+  for (const int k : kept_) volume.at.push_back(row_of(model, context.model, k));
   Eigen::MatrixXd& W = model.effectors.empty() ? volume.W : compliance_;
-  factor_->compliance(W);
+  factor_->kept_compliance(W);
   rim_.clear();
   N_.resize(0, 0);
   Y_.resize(0, 0);
   Z_.resize(0, 0);
   if (kind == solid::Tangent::exact) add_rim(context, iterate, number, W);
   volume.symmetric = Z_.size() == 0;
-  const auto rows = static_cast<Eigen::Index>(volume.at.size());
-  if (!model.effectors.empty()) volume.W = W.topLeftCorner(rows, rows);
+  if (!model.effectors.empty()) {
+    const auto& place = factor_->plan().border;
+    const auto rows = static_cast<Eigen::Index>(kept_.size());
+    volume.W.resize(rows, rows);
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      for (Eigen::Index i = volume.symmetric ? j : 0; i < rows; ++i)
+        volume.W(i, j) = W(place[static_cast<std::size_t>(kept_[static_cast<std::size_t>(i)])],
+                           place[static_cast<std::size_t>(kept_[static_cast<std::size_t>(j)])]);
+    }
+  }
   return Z_.allFinite();
+}
+
+void FreeMotion::plan(const SolidModel& model) {
+  factor_.emplace(model.fronts);
+  const std::vector<int>& place = model.fronts->border;
+  kept_.resize(3 * model.rows.size());
+  std::iota(kept_.begin(), kept_.end(), 0);
+  std::sort(kept_.begin(), kept_.end(), [&place](int a, int b) { return place[a] < place[b]; });
+}
+
+int FreeMotion::row_of(const SolidModel& model, const Model& whole, int border_row) {
+  return whole.solid_rows[model.rows[border_row / 3]].row + border_row % 3;
 }
 
 /// The antisymmetric part of the pressures' tangents.
@@ -129,13 +152,17 @@ void FreeMotion::add_rim(const StepContext& context, const State& iterate, int n
   Y_.resize(model.body.unknowns, N_.cols());
   Eigen::MatrixXd HY(factor_->borders(), N_.cols());
   for (Eigen::Index i = 0; i < N_.cols(); ++i) {
-    factor_->half_solve(Eigen::VectorXd::Unit(model.body.unknowns, rim_[static_cast<std::size_t>(i)]), Y_.col(i));
-    factor_->border_times(Y_.col(i), HY.col(i));
+    factor_->half_solve(Eigen::VectorXd::Unit(model.body.unknowns, rim_[static_cast<std::size_t>(i)]), half_, rows_);
+    Y_.col(i) = half_;
+    HY.col(i) = rows_;
   }
   const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
   Z_ = (Eigen::MatrixXd::Identity(N_.rows(), N_.cols()) + N_ * C).partialPivLu().solve(N_);
-  W -= HY * Z_ * HY.transpose();
+  const std::vector<int>& place = factor_->plan().border;
+  Eigen::MatrixXd kept(HY.rows(), HY.cols());
+  for (Eigen::Index k = 0; k < HY.rows(); ++k) kept.row(place[static_cast<std::size_t>(k)]) = HY.row(k);
+  W = Eigen::MatrixXd(W.selfadjointView<Eigen::Lower>()) - kept * Z_ * kept.transpose();
 }
 
 const Eigen::VectorXd& FreeMotion::with_rim(const Eigen::VectorXd& y) {
@@ -144,11 +171,25 @@ const Eigen::VectorXd& FreeMotion::with_rim(const Eigen::VectorXd& y) {
   return turned_;
 }
 
+double FreeMotion::compliance_of(int one, int other) const {
+  const std::vector<int>& place = factor_->plan().border;
+  const auto [first, last] = std::minmax(place[one], place[other]);
+  return Z_.size() == 0 ? compliance_(last, first) : compliance_(place[one], place[other]);
+}
+
+void FreeMotion::push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c) {
+  y_ = pushed_;
+  rows_ = moved_;
+  take_push(model, whole, c);
+}
+
 void FreeMotion::push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c) {
-  y_.resize(model.body.unknowns);
-  rows_.resize(factor_->borders());
-  factor_->half_solve(force, y_);
-  factor_->border_times(with_rim(y_), rows_);
+  factor_->half_solve(force, y_, rows_);
+  take_push(model, whole, c);
+}
+
+void FreeMotion::take_push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c) {
+  if (Y_.size() > 0) factor_->border_times(with_rim(y_), rows_);
   for (std::size_t k = 0; k < model.rows.size(); ++k)
     c.segment<3>(whole.solid_rows[model.rows[k]].row) += rows_.segment<3>(static_cast<Eigen::Index>(3 * k));
   free_ = rows_;
@@ -167,7 +208,9 @@ void FreeMotion::effector_motion(const SolidModel& model, const Model& whole, co
   for (std::size_t k = 0; k < model.effectors.size(); ++k) {
     for (int i = 0; i < 3; ++i) {
       const auto own = static_cast<Eigen::Index>(3 * (model.rows.size() + k)) + i;
-      motion[3 * model.effectors[k] + i] = (pushed ? free_[own] : 0.0) + compliance_.row(own).dot(rows_);
+      double sum = pushed ? free_[own] : 0.0;
+      for (const int other : kept_) sum += compliance_of(static_cast<int>(own), other) * rows_[other];
+      motion[3 * model.effectors[k] + i] = sum;
     }
   }
 }
@@ -176,11 +219,10 @@ void FreeMotion::set_contact_rows(const linalg::SparseFactor::Rows& rows) {
   reach_ = factor_->reach({rows.innerIndexPtr(), static_cast<std::size_t>(rows.nonZeros())});
   contacts_.resize(static_cast<Eigen::Index>(reach_.size()), rows.rows());
   coupled_.resize(factor_->borders(), rows.rows());
-  half_.resize(rows.cols());
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     x_ = rows.row(i).transpose();
-    factor_->half_solve(x_, half_);
-    factor_->border_times(half_, coupled_.col(i));
+    factor_->half_solve(x_, half_, rows_);
+    coupled_.col(i) = rows_;
     contacts_.col(i) = half_(reach_);
   }
 }
@@ -221,9 +263,12 @@ void FreeMotion::add_contact_forces(const Eigen::VectorXd& forces) {
 void FreeMotion::correct(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
                          Eigen::Matrix3Xd& dx) {
   gather(model, whole, dlambda);
-  factor_->add_border_transposed(rows_, y_);
-  x_.resize(model.body.unknowns);
-  factor_->back_solve(with_rim(y_), x_);
+  if (Y_.size() == 0) {
+    factor_->back_solve(y_, rows_, x_);
+  } else {
+    factor_->add_border_transposed(rows_, y_);
+    factor_->back_solve(with_rim(y_), x_);
+  }
   solid::from_unknowns(model.body, x_, dx);
 }
 
@@ -232,9 +277,17 @@ double FreeMotion::leave(const SolidModel& model, const Model& whole, const solv
                          Eigen::VectorXd& c) {
   gather(model, whole, dlambda);
   solid::at_unknowns(model.body, dx, x_);
-  const Eigen::Index rows = volume.W.rows();
-  free_.head(rows).noalias() += volume.W.lazyProduct(rows_.head(rows));
-  for (Eigen::Index k = 0; k < rows; ++k) {
+  const auto rows = static_cast<Eigen::Index>(kept_.size());
+  half_.resize(2 * rows);
+  auto acting = half_.head(rows), moved = half_.tail(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) acting[i] = rows_[kept_[i]];
+  if (volume.symmetric) {
+    moved.noalias() = volume.W.selfadjointView<Eigen::Lower>() * acting;
+  } else {
+    moved.noalias() = volume.W.lazyProduct(acting);
+  }
+  for (Eigen::Index i = 0; i < rows; ++i) free_[kept_[i]] += moved[i];
+  for (const int k : kept_) {
     double motion = 0.0;
     for (int at = model.border.outerIndexPtr()[k]; at < model.border.outerIndexPtr()[k + 1]; ++at) {
       const double weight = factor_->border_values()[at];
@@ -242,7 +295,7 @@ double FreeMotion::leave(const SolidModel& model, const Model& whole, const solv
       motion += weight * x_[unknown];
       force[unknown] += weight * rows_[k];
     }
-    c[volume.at[static_cast<std::size_t>(k)]] += motion - free_[k];
+    c[row_of(model, whole, k)] += motion - free_[k];
   }
   factor_->subtract_product(x_, force);
   if (!rim_.empty()) force(rim_) -= N_ * Eigen::VectorXd(x_(rim_));

@@ -14,6 +14,7 @@ struct SolidForces {
   Eigen::VectorXd reaction;  ///< of what is held, as in SolidState
   double largest = 0.0;      ///< [N] largest at a node
   double scale = 0.0;        ///< [N] largest single contribution at a node
+  solid::Deformation deformation;
   solid::Residual nodal;
 };
 /// Memory of earlier forces is used again.
@@ -27,13 +28,16 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
 /// Woodbury's formula S then becomes S V, V = 1 - Y N (1 + Y^T S Y N)^-1 Y^T S with Y = R P.
 class FreeMotion {
  public:
-  /// Puts A together and factors it; `volume` receives W. False where A cannot be factored.
-  bool factor(const StepContext& context, const State& iterate, int number, solid::Tangent kind, threads::Crew& crew,
-              StageTimes& times, solve::VolumePart& volume);
+  /// Puts A together, at the iterate that these are the forces of, and factors it; `volume` receives W. False where A
+  /// cannot be factored.
+  bool factor(const StepContext& context, const State& iterate, int number, const SolidForces& forces,
+              solid::Tangent kind, threads::Crew& crew, StageTimes& times, solve::VolumePart& volume);
   double stiffness() const { return factor_->largest_diagonal(); }  ///< [N/m] largest diagonal entry of A
   int negative() const { return factor_->negative(); }  ///< eigenvalues of A: 0 where the volume by itself is stable
 
-  /// Solves the first half for a force over the unknowns. H dx, without dlambda, is added to the violations c.
+  /// Solves the first half for what those forces leave unbalanced, or for a force over the unknowns. H dx, without
+  /// dlambda, is added to the violations c.
+  void push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
   void push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c);
   /// Motion [m] of the volume's effectors, three numbers each: that of the push, and what multipliers add.
   void effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, bool pushed,
@@ -60,6 +64,12 @@ class FreeMotion {
                const Eigen::VectorXd& dlambda, const Eigen::Matrix3Xd& dx, Eigen::VectorXd& force, Eigen::VectorXd& c);
 
  private:
+  void plan(const SolidModel& model);
+  void take_push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
+  /// The row of the scene that is a border row, not an effector's.
+  static int row_of(const SolidModel& model, const Model& whole, int border_row);
+  /// What a force on border row `other` moves an effector's.
+  double compliance_of(int one, int other) const;
   /// Forces of the model's rows, zeros for effectors.
   void gather(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda);
   void add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W);
@@ -67,13 +77,15 @@ class FreeMotion {
   const Eigen::VectorXd& with_rim(const Eigen::VectorXd& y);
 
   std::optional<linalg::SparseFactor> factor_;
-  Eigen::MatrixXd compliance_;  ///< of all border rows, those of effectors last
+  std::vector<int> kept_;       ///< border rows that are rows of the scene, in the order in which they are kept
+  Eigen::MatrixXd compliance_;  ///< where there are effectors: of all border rows, as they are kept
   Eigen::VectorXd free_;        ///< motion of the border rows by the push
   std::vector<int> rim_;        ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;   ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
-  std::vector<int> reach_;              ///< where rows of contacts may have entries
-  Eigen::MatrixXd contacts_, coupled_;  ///< R H_c^T there, and H A^-1 H_c^T
+  Eigen::VectorXd push_, pushed_, moved_;  ///< what the forces left unbalanced, half solved
+  std::vector<int> reach_;                 ///< where rows of contacts may have entries
+  Eigen::MatrixXd contacts_, coupled_;     ///< R H_c^T there, and H A^-1 H_c^T
   Eigen::VectorXd half_;
 };
 

@@ -92,7 +92,7 @@ bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& fail
 
 void Linearization::factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times) {
   const auto factored = [&](solid::Tangent wanted) {
-    return free_[number].factor(*context_, *iterate_, static_cast<int>(number), wanted, crew_, times,
+    return free_[number].factor(*context_, *iterate_, static_cast<int>(number), forces_[number], wanted, crew_, times,
                                 reduced_.problem.volumes[number]);
   };
   Factored& own = factored_[number];
@@ -149,17 +149,31 @@ bool Linearization::unstable() const {
 }
 
 void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer) {
+  const Clock clock(times_->solve);
+  const Model& model = context_->model;
   pushes_.resize(right.forces_.size());
   for (std::size_t i = 0; i < pushes_.size(); ++i) pushes_[i] = -right.forces_[i].r;
   solve::right_side(right.reduced_.problem, side_);
-  respond(pushes_, side_, increment, steer);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    if (&right == this) {
+      free_[i].push(model.solids[i], model, side_.c);
+    } else {
+      free_[i].push(model.solids[i], model, pushes_[i], side_.c);
+    }
+  }
+  follow(pushes_, side_, increment, steer);
 }
 
-void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment,
-                            const Steer& steer) {
+void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment) {
   const Clock clock(times_->solve);
   const Model& model = context_->model;
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
+  follow(solids, side, increment, {});
+}
+
+void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side,
+                           Increment& increment, const Steer& steer) {
+  const Model& model = context_->model;
   factor_.solve(side, increment.reduced);
   if (ContactForces::wanted(model, contacts_) && increment.reduced.ok) {
     if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);

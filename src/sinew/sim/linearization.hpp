@@ -66,8 +66,7 @@ class Linearization {
   void solve(Increment& increment, const Steer& steer = {}) { solve(*this, increment, steer); }
   void solve(const Linearization& right, Increment& increment, const Steer& steer = {});
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
-  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment,
-               const Steer& steer = {});
+  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
   void couple(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.solve(side, solution); }
   /// How multipliers move the effectors [m], and, while the last forces on volumes still stand (`pushed`), these.
@@ -80,6 +79,9 @@ class Linearization {
   void factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times);
   bool solids_factored(std::string& failed);
   void factor_border();
+  /// What comes after volumes have been pushed.
+  void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
+              const Steer& steer);
   /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
   void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 

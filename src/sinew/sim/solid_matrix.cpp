@@ -234,6 +234,13 @@ Eigen::MatrixXd pressure_skew(const SolidModel& model, const SolidLoadModel& loa
 
 void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x, solid::Tangent kind,
               double* values) {
+  solid::Deformation deformation;
+  solid::deform(model.body, start, x, deformation);
+  assemble(model, start, x, deformation, kind, values);
+}
+
+void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x,
+              const solid::Deformation& deformation, solid::Tangent kind, double* values) {
   const solid::Body& body = model.body;
   const auto insert = [&](int cell, const solid::ElementMatrix& own) {
     const BlockPlace* place = model.places.data() + model.first_place[static_cast<std::size_t>(cell)];
@@ -254,7 +261,7 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
     solid::tet_kernels().add(own, places, values);
   };
   // By reference: functions as large as these would ask for memory.
-  solid::assemble_tangent(body, start, x, kind, std::cref(insert), std::cref(insert_batch));
+  solid::assemble_tangent(body, start, x, deformation, kind, std::cref(insert), std::cref(insert_batch));
   const double factor = solid::mass_factor(body, start.rate);
   const BlockPlace* place = model.mass_places.data();
   each_mass(body, [&](int, int, double mass) {

@@ -9,6 +9,9 @@ namespace sinew {
 void plan_factors(Model& model);
 
 /// Adds A of (10) / h^2: elasticity, damping, mass and springs, at the places of the model.
+void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x,
+              const solid::Deformation& deformation, solid::Tangent kind, double* values);
+/// The same where nothing else needs the deformation.
 void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x, solid::Tangent kind,
               double* values);
 

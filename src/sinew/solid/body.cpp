@@ -161,9 +161,9 @@ void from_unknowns(const Body& body, const Eigen::VectorXd& u, Eigen::Matrix3Xd&
 
 namespace {
 
-void scatter(const Body& body, int e, const NodeVectors& own, Eigen::Matrix3Xd& force) {
+void scatter(const Body& body, int e, const NodeVectors& own, Eigen::Matrix4Xd& force) {
   const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
-  for (Eigen::Index i = 0; i < own.cols(); ++i) force.col(nodes[static_cast<std::size_t>(i)]) += own.col(i);
+  for (Eigen::Index i = 0; i < own.cols(); ++i) force.col(nodes[static_cast<std::size_t>(i)]).head<3>() += own.col(i);
 }
 
 bool viscous(const Body& body, int e) {
@@ -171,37 +171,40 @@ bool viscous(const Body& body, int e) {
   return moduli.mu > 0.0 || moduli.lambda != 0.0;
 }
 
-void scatter(const TetBatch& batch, int i, const Eight (&own)[4][3], Eigen::Matrix3Xd& force) {
+/// The kernels' forces of a batch; those of elements without a rotation go to the node after the last.
+void add_batch(const Body& body, const TetBatch& batch, const TetFrames& frames, const Deformation& deformation,
+               double rate, Eigen::Matrix4Xd& elastic, Eigen::Matrix4Xd& viscous_forces) {
+  const auto add = [&](const int(&node)[4][kBatch]) {
+    tet_kernels().add_forces(batch, frames, deformation.motion.data(), rate, node, elastic.data(),
+                             viscous_forces.data());
+  };
+  if (frames.missing == 0) return add(batch.node);
+  int node[4][kBatch];
   for (int a = 0; a < 4; ++a) {
-    for (int axis = 0; axis < 3; ++axis) force(axis, batch.node[a][i]) += own[a][axis][i];
+    for (int i = 0; i < kBatch; ++i) node[a][i] = frames.missing >> i & 1U ? body.nodes() : batch.node[a][i];
   }
+  add(node);
 }
 
-/// Elastic and, where `start` is given, viscous forces of all elements.
-void add_forces(const Body& body, const StepStart* start, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& elastic,
-                Eigen::Matrix3Xd& viscous_forces) {
+/// Elastic and, where `start` moves, viscous forces of all elements.
+void add_forces(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
+                Eigen::Matrix4Xd& elastic, Eigen::Matrix4Xd& viscous_forces) {
   ElementResponse response;
-  const double rate = start ? start->rate : 0.0;
   const auto add = [&](int e) {
     evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::first, Tangent::exact, response);
     scatter(body, e, response.force, elastic);
-    if (rate == 0.0 || !viscous(body, e)) return;
+    if (start.rate == 0.0 || !viscous(body, e)) return;
     response.force.setZero(3, body.element(e).nodes());
-    add_viscosity(body.of(e).viscosity, rate, body.element(e), body.at_nodes(e, start->x), body.at_nodes(e, x),
+    add_viscosity(body.of(e).viscosity, start.rate, body.element(e), body.at_nodes(e, start.x), body.at_nodes(e, x),
                   Derivatives::first, Tangent::exact, response);
     scatter(body, e, response.force, viscous_forces);
   };
-  const TetKernels& kernels = tet_kernels();
-  TetForces own;
-  for (const TetBatch& batch : body.batches) {
-    const unsigned left_out = kernels.forces(batch, x.data(), rate > 0.0 ? start->x.data() : nullptr, rate, own);
+  for (std::size_t k = 0; k < body.batches.size(); ++k) {
+    const TetBatch& batch = body.batches[k];
+    const TetFrames& frames = deformation.frames[k];
+    add_batch(body, batch, frames, deformation, start.rate, elastic, viscous_forces);
     for (int i = 0; i < batch.count; ++i) {
-      if (left_out >> i & 1U) {
-        add(batch.cell[i]);
-        continue;
-      }
-      scatter(batch, i, own.elastic, elastic);
-      if (rate > 0.0) scatter(batch, i, own.viscous, viscous_forces);
+      if (frames.missing >> i & 1U) add(batch.cell[i]);
     }
   }
   for (const int e : body.others) add(e);
@@ -209,10 +212,24 @@ void add_forces(const Body& body, const StepStart* start, const Eigen::Matrix3Xd
 
 }  // namespace
 
+void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Deformation& deformation) {
+  if (body.batches.empty()) return;
+  const int n = body.nodes();
+  deformation.x.setZero(4, n + 1);
+  deformation.x.topLeftCorner(3, n) = x;
+  deformation.motion.setZero(4, n + 1);
+  if (start.rate > 0.0) deformation.motion.topLeftCorner(3, n) = x - start.x;
+  deformation.frames.resize(body.batches.size());
+  for (std::size_t k = 0; k < body.batches.size(); ++k)
+    tet_kernels().frames(body.batches[k], deformation.x.data(), deformation.frames[k]);
+}
+
 Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
-  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, body.nodes()), none;
-  add_forces(body, nullptr, x, force, none);
-  return force;
+  Deformation deformation;
+  deform(body, {}, x, deformation);
+  Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, body.nodes() + 1), none;
+  add_forces(body, {}, x, deformation, force, none);
+  return force.topLeftCorner(3, body.nodes());
 }
 
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
@@ -225,32 +242,34 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
   return energy;
 }
 
-void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
-              Residual& residual) {
+void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
+              const Vec3& gravity, Residual& residual) {
   const int n = body.nodes();
-  residual.elastic.setZero(3, n);
-  residual.viscous.setZero(3, n);
-  add_forces(body, &start, x, residual.elastic, residual.viscous);
-  // (v - v_0) / h + a v
-  residual.motion = (mass_factor(body, start.rate) * (x - start.x)) - start.rate * start.v;
-  residual.inertia.resize(3, n);
+  residual.elastic.setZero(4, n + 1);
+  residual.viscous.setZero(4, n + 1);
+  add_forces(body, start, x, deformation, residual.elastic, residual.viscous);
+  const double factor = mass_factor(body, start.rate);
   residual.sum.resize(3, n);
   double largest = 0.0;  // squared
   for (int b = 0; b < n; ++b) {
     Vec3 inertia = Vec3::Zero();
-    for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)
-      inertia += at.value() * residual.motion.col(at.row());
-    const Vec3 weight = body.masses[b] * gravity;
-    residual.inertia.col(b) = inertia;
-    residual.sum.col(b) = inertia + residual.elastic.col(b) + residual.viscous.col(b) - weight;
-    largest = std::max({largest, inertia.squaredNorm(), residual.elastic.col(b).squaredNorm(),
-                        residual.viscous.col(b).squaredNorm(), weight.squaredNorm()});
+    for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at && start.rate > 0.0; ++at) {
+      const Eigen::Index a = at.row();
+      inertia +=
+          at.value() * (factor * (x.col(a) - start.x.col(a)) - start.rate * start.v.col(a));  // M (v - v_0)/h + ..
+    }
+    const Vec3 weight = body.masses[b] * gravity, elastic = residual.elastic.col(b).head<3>(),
+               viscous = residual.viscous.col(b).head<3>();
+    residual.sum.col(b) = inertia + elastic + viscous - weight;
+    largest =
+        std::max({largest, inertia.squaredNorm(), elastic.squaredNorm(), viscous.squaredNorm(), weight.squaredNorm()});
   }
   residual.scale = std::sqrt(largest);
 }
 
-void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
-                      const InsertElement& insert, const InsertBatch& insert_batch) {
+void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
+                      const Deformation& deformation, Tangent kind, const InsertElement& insert,
+                      const InsertBatch& insert_batch) {
   ElementResponse response;
   const auto add = [&](int e) {
     evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::second, kind, response);
@@ -261,12 +280,17 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
   };
   const TetKernels& kernels = tet_kernels();
   TetStiffness stiffness;
-  for (const TetBatch& batch : body.batches) {
-    const bool definite = kind == Tangent::definite;  // the exact one has a turning rotation, too
-    const unsigned left_out = definite ? kernels.stiffness(batch, x.data(), start.rate, stiffness) : ~0U;
-    if (definite) insert_batch(batch, stiffness, left_out);
+  for (std::size_t k = 0; k < body.batches.size(); ++k) {
+    const TetBatch& batch = body.batches[k];
+    const TetFrames& frames = deformation.frames[k];
+    if (kind == Tangent::definite) {
+      kernels.definite(batch, frames, start.rate, stiffness);
+    } else {
+      kernels.exact(batch, frames, deformation.motion.data(), start.rate, stiffness);
+    }
+    insert_batch(batch, stiffness, frames.missing);
     for (int i = 0; i < batch.count; ++i) {
-      if (left_out >> i & 1U) add(batch.cell[i]);
+      if (frames.missing >> i & 1U) add(batch.cell[i]);
     }
   }
   for (const int e : body.others) add(e);

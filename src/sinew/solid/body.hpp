@@ -78,17 +78,24 @@ Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x);
 /// Elastic energy [J]; infinite where an element's law ends (turned inside out, and not made for it).
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 
+/// Where a body is, as forces and tangent both need it first.
+struct Deformation {
+  Eigen::Matrix4Xd x, motion;     ///< [m] of nodes, and since the start; a zero below, one more node: see TetKernels
+  std::vector<TetFrames> frames;  ///< of the batches
+};
+/// Memory of an earlier one is used again, here and below.
+void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Deformation& deformation);
+
 /// Left minus right side of (7) under backward Euler, without loads and multipliers, 3 x n [N]:
 ///     M (v - v_0) / h + a M v + f(x) + d(x, x_0) - M g,      v = (x - x_0) / h,
 /// with Rayleigh's a and the viscous forces d (`add_viscosity`).
 struct Residual {
   Eigen::Matrix3Xd sum;
   double scale = 0.0;  ///< [N] largest single contribution at any node: what the residual is measured against
-  Eigen::Matrix3Xd elastic, viscous, inertia, motion;  ///< [N]; the last is room to work in
+  Eigen::Matrix4Xd elastic, viscous;  ///< [N] shaped like a Deformation's
 };
-/// Memory of an earlier one is used again.
-void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Vec3& gravity,
-              Residual& residual);
+void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
+              const Vec3& gravity, Residual& residual);
 
 /// Take the matrix of one element, 3n x 3n, and those of a batch, without the elements in the bits of `left_out`.
 using InsertElement = std::function<void(int cell, const ElementMatrix& matrix)>;
@@ -96,8 +103,9 @@ using InsertBatch = std::function<void(const TetBatch& batch, const TetStiffness
 
 /// The matrix of (10) divided by h, A = M (1 + a h) / h^2 + d'(x) + K(x), but for its mass, element by element.
 /// mass_factor() times Body::mass is what is missing.
-void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Tangent kind,
-                      const InsertElement& insert, const InsertBatch& insert_batch);
+void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
+                      const Deformation& deformation, Tangent kind, const InsertElement& insert,
+                      const InsertBatch& insert_batch);
 
 /// (1 / h + a) / h.
 double mass_factor(const Body& body, double rate);

@@ -21,9 +21,10 @@ struct TetBatch {
   int count = 0;
 };
 
-/// Forces of the nodes, by axis: 2 mu (F - R) + lambda tr(R^T F - 1) R and its viscous counterpart, times gradients.
-struct TetForces {
-  Eight elastic[4][3], viscous[4][3];  ///< [N]
+/// The deformation gradients of a batch's elements and their rotations, by columns.
+struct TetFrames {
+  Eight F[3][3], R[3][3];
+  unsigned missing = 0;  ///< a bit for each element whose rotation was not found, flat or inside out, say
 };
 
 /// On and below the diagonal, block (a, b) of nodes a >= b at a (a + 1) / 2 + b, its entries by columns.
@@ -36,14 +37,20 @@ struct TetPlaces {
   std::uint32_t block[10][kBatch];
 };
 
-/// One set of kernels (linalg/kernels). Both return a bit for each element whose rotation they did not find, flat or
-/// inside out, say; what they give of those means nothing.
+/// One set of kernels (linalg/kernels). Vectors of nodes have a fourth number, a zero, each.
 struct TetKernels {
   const char* name;
-  /// x, start: 3 x nodes [m]; rate [1/s], 0: no viscous forces.
-  unsigned (*forces)(const TetBatch& batch, const double* x, const double* start, double rate, TetForces& forces);
+  void (*frames)(const TetBatch& batch, const double* x, TetFrames& frames);
+  /// Adds to the forces of the nodes 2 mu (F - R) + lambda tr(R^T F - 1) R and its viscous counterpart, times
+  /// gradients [N]. `motion`: x - x_0 [m]; `rate` [1/s], 0: no viscous forces. `node`: the batch's, or where its
+  /// elements' forces go instead.
+  void (*add_forces)(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+                     const int (&node)[4][kBatch], double* elastic, double* viscous);
   /// The definite tangent: that of linear elasticity in the frame R, and of the viscous forces without their stress.
-  unsigned (*stiffness)(const TetBatch& batch, const double* x, double rate, TetStiffness& stiffness);
+  /// `exact`: the derivative of the forces. Both give nothing of use for elements that are missing.
+  void (*definite)(const TetBatch& batch, const TetFrames& frames, double rate, TetStiffness& stiffness);
+  void (*exact)(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+                TetStiffness& stiffness);
   /// Adds the blocks of all eight elements.
   void (*add)(const TetStiffness& stiffness, const TetPlaces& places, double* numbers);
 };

@@ -36,40 +36,103 @@ Matrix operator*(const Matrix& A, const Lanes& s) { return {A.c0 * s, A.c1 * s, 
 Vector operator*(const Matrix& A, const Vector& v) { return A.c0 * v.x + A.c1 * v.y + A.c2 * v.z; }
 Lanes dot(const Matrix& A, const Matrix& B) { return dot(A.c0, B.c0) + dot(A.c1, B.c1) + dot(A.c2, B.c2); }
 
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
+void add_four(double* p, const Four& v) { *reinterpret_cast<Four*>(p) += v; }
+
+/// Four vectors of three numbers, which come as their first, second and third numbers.
+struct FourVectors {
+  Four of[4];
+};
+FourVectors turned(const Four& x, const Four& y, const Four& z) {
+  const Four none = {};
+  const Four xy02 = __builtin_shufflevector(x, y, 0, 4, 2, 6), xy13 = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  const Four z02 = __builtin_shufflevector(z, none, 0, 4, 2, 6), z13 = __builtin_shufflevector(z, none, 1, 5, 3, 7);
+  return {{__builtin_shufflevector(xy02, z02, 0, 1, 4, 5), __builtin_shufflevector(xy13, z13, 0, 1, 4, 5),
+           __builtin_shufflevector(xy02, z02, 2, 3, 6, 7), __builtin_shufflevector(xy13, z13, 2, 3, 6, 7)}};
+}
+
+/// Vectors of the nodes of one register's elements.
+Vector gather(const double* x, const int* node) {
+  Vector v;
+  if constexpr (kWidth < 4) {
+    for (int i = 0; i < kWidth; ++i) {
+      const double* own = x + 4L * node[i];
+      v.x[i] = own[0];
+      v.y[i] = own[1];
+      v.z[i] = own[2];
+    }
+  } else {
+    for (int i = 0; i < kWidth; i += 4) {
+      const Four &a = four(x + 4L * node[i]), &b = four(x + 4L * node[i + 1]), &c = four(x + 4L * node[i + 2]),
+                 &d = four(x + 4L * node[i + 3]);
+      const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+      const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+      reinterpret_cast<Four*>(&v.x)[i / 4] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
+      reinterpret_cast<Four*>(&v.y)[i / 4] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
+      reinterpret_cast<Four*>(&v.z)[i / 4] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
+    }
+  }
+  return v;
+}
+
+void scatter(const Vector& v, const int* node, double* sum) {
+  if constexpr (kWidth < 4) {
+    for (int i = 0; i < kWidth; ++i) {
+      double* own = sum + 4L * node[i];
+      own[0] += v.x[i];
+      own[1] += v.y[i];
+      own[2] += v.z[i];
+    }
+  } else {
+    const auto* x = reinterpret_cast<const Four*>(&v.x);
+    const auto* y = reinterpret_cast<const Four*>(&v.y);
+    const auto* z = reinterpret_cast<const Four*>(&v.z);
+    for (int i = 0; i < kWidth; i += 4) {
+      const FourVectors own = turned(x[i / 4], y[i / 4], z[i / 4]);
+      for (int k = 0; k < 4; ++k) add_four(sum + 4L * node[i + k], own.of[k]);
+    }
+  }
+}
+
 /// Some elements of a batch: those of one register.
 struct Part {
   const TetBatch& batch;
   int first;
 
   Lanes operator()(const Eight& numbers) const { return load(numbers + first); }
-  Vector gradient(int a) const {
-    return {(*this)(batch.gradient[a][0]), (*this)(batch.gradient[a][1]), (*this)(batch.gradient[a][2])};
+  Vector operator()(const Eight (&v)[3]) const { return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])}; }
+  Matrix operator()(const Eight (&A)[3][3]) const { return {(*this)(A[0]), (*this)(A[1]), (*this)(A[2])}; }
+  void put(const Vector& v, Eight (&to)[3]) const {
+    store(to[0] + first, v.x);
+    store(to[1] + first, v.y);
+    store(to[2] + first, v.z);
   }
-  Vector at_node(const double* x, int a) const {
-    Vector v;
-    for (int i = 0; i < kWidth; ++i) {
-      const double* own = x + 3L * batch.node[a][first + i];
-      v.x[i] = own[0];
-      v.y[i] = own[1];
-      v.z[i] = own[2];
-    }
-    return v;
+  void put(const Matrix& A, Eight (&to)[3][3]) const {
+    put(A.c0, to[0]);
+    put(A.c1, to[1]);
+    put(A.c2, to[2]);
   }
-  /// sum_a x_a g_a^T; the fourth gradient is minus the sum of the others.
-  Matrix gradient_of(const double* x) const {
-    return gradient_of([&](int a) { return at_node(x, a); });
-  }
-  /// The same of x - start, so that small motions keep their digits.
-  Matrix gradient_of_motion(const double* x, const double* start) const {
-    return gradient_of([&](int a) { return at_node(x, a) - at_node(start, a); });
-  }
-  template <class At>
-  Matrix gradient_of(const At& at) const {
+  Vector gradient(int a) const { return (*this)(batch.gradient[a]); }
+  /// sum_a v_a g_a^T of vectors of the nodes; the fourth gradient is minus the sum of the others.
+  Matrix gradient_of(const double* v) const {
+    const auto at = [&](int a) { return gather(v, batch.node[a] + first); };
     const Vector last = at(3), e0 = at(0) - last, e1 = at(1) - last, e2 = at(2) - last;
     const Vector g0 = gradient(0), g1 = gradient(1), g2 = gradient(2);
     return {e0 * g0.x + e1 * g1.x + e2 * g2.x, e0 * g0.y + e1 * g1.y + e2 * g2.y, e0 * g0.z + e1 * g1.z + e2 * g2.z};
   }
 };
+
+template <class Visit>
+void each_part(const TetBatch& batch, const Visit& visit) {
+  for (int first = 0; first < kBatch; first += kWidth) visit(Part{batch, first});
+}
+
+unsigned bits(const Truth& truth, int first) {
+  unsigned set = 0;
+  for (int k = 0; k < kWidth; ++k) set |= truth[k] ? 1U << (first + k) : 0U;
+  return set;
+}
 
 /// The rotation of the polar decomposition, by Newton's iteration for R^T R = 1 without scaling; false where it has not
 /// converged or would end at a mirror.
@@ -91,103 +154,177 @@ Matrix rotation(const Matrix& F, Truth& found) {
   return X;
 }
 
-/// Visits a batch register by register with F and R; a bit for each element without one.
-template <class Visit>
-unsigned each_part(const TetBatch& batch, const double* x, const Visit& visit) {
-  unsigned missing = 0;
-  for (int first = 0; first < kBatch; first += kWidth) {
-    const Part part{batch, first};
+void frames(const TetBatch& batch, const double* x, TetFrames& frames) {
+  frames.missing = 0;
+  each_part(batch, [&](const Part& part) {
     const Matrix F = part.gradient_of(x);
     Truth found;
-    const Matrix R = rotation(F, found);
-    for (int k = 0; k < kWidth; ++k) missing |= found[k] ? 0U : 1U << (first + k);
-    visit(part, F, R);
-  }
-  return missing;
-}
-
-/// Matrix times the gradients of the four nodes.
-void put_forces(const Matrix& P, const Part& part, Eight (&force)[4][3]) {
-  Vector sum = {};
-  for (int a = 0; a < 3; ++a) {
-    const Vector f = P * part.gradient(a);
-    store(force[a][0] + part.first, f.x);
-    store(force[a][1] + part.first, f.y);
-    store(force[a][2] + part.first, f.z);
-    sum = sum + f;
-  }
-  store(force[3][0] + part.first, -sum.x);
-  store(force[3][1] + part.first, -sum.y);
-  store(force[3][2] + part.first, -sum.z);
-}
-
-unsigned forces(const TetBatch& batch, const double* x, const double* start, double rate, TetForces& forces) {
-  return each_part(batch, x, [&](const Part& part, const Matrix& F, const Matrix& R) {
-    const Lanes pressure = part(batch.lambda) * (dot(R, F) - 3.0);
-    put_forces((F - R) * (2.0 * part(batch.mu)) + R * pressure, part, forces.elastic);
-    if (rate == 0.0) return;
-    // E - E_0 = sym((F_0 + dF / 2)^T dF)
-    const Matrix dF = part.gradient_of_motion(x, start), middle = F - dF * (Lanes{} + 0.5);
-    const Lanes xx = dot(middle.c0, dF.c0), yy = dot(middle.c1, dF.c1), zz = dot(middle.c2, dF.c2);
-    const Lanes mu = rate * part(batch.viscous_mu), trace = rate * part(batch.viscous_lambda) * (xx + yy + zz);
-    const Lanes xy = mu * (dot(middle.c0, dF.c1) + dot(middle.c1, dF.c0));
-    const Lanes yz = mu * (dot(middle.c1, dF.c2) + dot(middle.c2, dF.c1));
-    const Lanes zx = mu * (dot(middle.c2, dF.c0) + dot(middle.c0, dF.c2));
-    const Matrix S = {
-        {2.0 * mu * xx + trace, xy, zx}, {xy, 2.0 * mu * yy + trace, yz}, {zx, yz, 2.0 * mu * zz + trace}};
-    put_forces({F * S.c0, F * S.c1, F * S.c2}, part, forces.viscous);
+    part.put(rotation(F, found), frames.R);
+    part.put(F, frames.F);
+    frames.missing |= bits(found == 0, part.first);
   });
 }
 
-unsigned stiffness(const TetBatch& batch, const double* x, double rate, TetStiffness& stiffness) {
-  return each_part(batch, x, [&](const Part& part, const Matrix& F, const Matrix& R) {
-    const Lanes mu = part(batch.mu), lambda = part(batch.lambda);
-    const Lanes viscous_mu = rate * part(batch.viscous_mu), viscous_lambda = rate * part(batch.viscous_lambda);
-    // mu (g_a . g_b + R g_b (R g_a)^T) + lambda R g_a (R g_b)^T, and the same with F and F F^T in place of R and 1.
-    Vector g[4] = {part.gradient(0), part.gradient(1), part.gradient(2), {}};
-    g[3] = -(g[0] + g[1] + g[2]);
-    Vector turned[4], moved[4];
-    for (int a = 0; a < 4; ++a) {
-      turned[a] = R * g[a];
-      moved[a] = F * g[a];
-    }
-    // F F^T
-    const Vector r0 = {F.c0.x, F.c1.x, F.c2.x}, r1 = {F.c0.y, F.c1.y, F.c2.y}, r2 = {F.c0.z, F.c1.z, F.c2.z};
-    const Lanes diagonal[3] = {mu + viscous_mu * dot(r0, r0), mu + viscous_mu * dot(r1, r1),
-                               mu + viscous_mu * dot(r2, r2)};
-    const Lanes xy = viscous_mu * dot(r0, r1), yz = viscous_mu * dot(r1, r2), zx = viscous_mu * dot(r2, r0);
-    for (int a = 0; a < 4; ++a) {
-      const Vector ta = turned[a] * mu, la = turned[a] * lambda;
-      const Vector ma = moved[a] * viscous_mu, na = moved[a] * viscous_lambda;
-      for (int b = 0; b <= a; ++b) {
-        const Lanes common = dot(g[a], g[b]);
-        const Vector &t = turned[b], &m = moved[b];
-        // Entry (row, column): t_row ta_column + la_row t_column + ...
-        const auto column = [&](const Lanes& tc, const Lanes& lc, const Lanes& mc, const Lanes& nc) -> Vector {
-          return t * tc + la * lc + m * mc + na * nc;
-        };
-        Vector c0 = column(ta.x, t.x, ma.x, m.x), c1 = column(ta.y, t.y, ma.y, m.y), c2 = column(ta.z, t.z, ma.z, m.z);
-        c0 = c0 + Vector{diagonal[0] * common, xy * common, zx * common};
-        c1 = c1 + Vector{xy * common, diagonal[1] * common, yz * common};
-        c2 = c2 + Vector{zx * common, yz * common, diagonal[2] * common};
-        Eight(&block)[9] = stiffness.block[a * (a + 1) / 2 + b];
-        store(block[0] + part.first, c0.x);
-        store(block[1] + part.first, c0.y);
-        store(block[2] + part.first, c0.z);
-        store(block[3] + part.first, c1.x);
-        store(block[4] + part.first, c1.y);
-        store(block[5] + part.first, c1.z);
-        store(block[6] + part.first, c2.x);
-        store(block[7] + part.first, c2.y);
-        store(block[8] + part.first, c2.z);
+/// A symmetric matrix.
+struct Symmetric {
+  Lanes xx, yy, zz, xy, yz, zx;
+};
+Vector operator*(const Symmetric& A, const Vector& v) {
+  return {A.xx * v.x + A.xy * v.y + A.zx * v.z, A.xy * v.x + A.yy * v.y + A.yz * v.z,
+          A.zx * v.x + A.yz * v.y + A.zz * v.z};
+}
+
+/// rate C (E - E_0) of the viscosity C, with E - E_0 = sym((F_0 + dF / 2)^T dF): small motions keep their digits.
+Symmetric viscous_stress(const Part& part, const Matrix& F, const double* motion, double rate) {
+  const Matrix dF = part.gradient_of(motion), middle = F - dF * (Lanes{} + 0.5);
+  const Lanes xx = dot(middle.c0, dF.c0), yy = dot(middle.c1, dF.c1), zz = dot(middle.c2, dF.c2);
+  const Lanes mu = rate * part(part.batch.viscous_mu), trace = rate * part(part.batch.viscous_lambda) * (xx + yy + zz);
+  return {2.0 * mu * xx + trace,
+          2.0 * mu * yy + trace,
+          2.0 * mu * zz + trace,
+          mu * (dot(middle.c0, dF.c1) + dot(middle.c1, dF.c0)),
+          mu * (dot(middle.c1, dF.c2) + dot(middle.c2, dF.c1)),
+          mu * (dot(middle.c2, dF.c0) + dot(middle.c0, dF.c2))};
+}
+
+void add_forces(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+                const int (&node)[4][kBatch], double* elastic, double* viscous) {
+  each_part(batch, [&](const Part& part) {
+    // A matrix times the gradients of the four nodes.
+    const auto add_stress = [&](const Matrix& P, double* sum) {
+      Vector last = {};
+      for (int a = 0; a < 3; ++a) {
+        const Vector f = P * part.gradient(a);
+        scatter(f, node[a] + part.first, sum);
+        last = last - f;
       }
-    }
+      scatter(last, node[3] + part.first, sum);
+    };
+    const Matrix F = part(frames.F), R = part(frames.R);
+    const Lanes pressure = part(batch.lambda) * (dot(R, F) - 3.0);
+    add_stress((F - R) * (2.0 * part(batch.mu)) + R * pressure, elastic);
+    if (rate == 0.0) return;
+    const Symmetric S = viscous_stress(part, F, motion, rate);
+    add_stress({F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}}, viscous);
   });
 }
 
-using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
-const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
-void add_four(double* p, const Four& v) { *reinterpret_cast<Four*>(p) += v; }
+/// A part's gradients, and what a matrix makes of them.
+struct Gradients {
+  Vector of[4];
+};
+Gradients gradients(const Part& part) {
+  Gradients g = {{part.gradient(0), part.gradient(1), part.gradient(2), {}}};
+  g.of[3] = -(g.of[0] + g.of[1] + g.of[2]);
+  return g;
+}
+Gradients operator*(const Matrix& A, const Gradients& g) {
+  return {{A * g.of[0], A * g.of[1], A * g.of[2], A * g.of[3]}};
+}
+
+/// Puts the matrices that `block` gives of nodes a >= b.
+template <class Block>
+void put_blocks(const Part& part, TetStiffness& stiffness, const Block& block) {
+#pragma GCC unroll 4
+  for (int a = 0; a < 4; ++a) {
+#pragma GCC unroll 4
+    for (int b = 0; b <= a; ++b) {
+      const Matrix own = block(a, b);
+      Eight(&to)[9] = stiffness.block[a * (a + 1) / 2 + b];
+      store(to[0] + part.first, own.c0.x);
+      store(to[1] + part.first, own.c0.y);
+      store(to[2] + part.first, own.c0.z);
+      store(to[3] + part.first, own.c1.x);
+      store(to[4] + part.first, own.c1.y);
+      store(to[5] + part.first, own.c1.z);
+      store(to[6] + part.first, own.c2.x);
+      store(to[7] + part.first, own.c2.y);
+      store(to[8] + part.first, own.c2.z);
+    }
+  }
+}
+
+/// u v^T.
+Matrix outer(const Vector& u, const Vector& v) { return {u * v.x, u * v.y, u * v.z}; }
+Matrix operator*(const Symmetric& A, const Lanes& s) {
+  return {{A.xx * s, A.xy * s, A.zx * s}, {A.xy * s, A.yy * s, A.yz * s}, {A.zx * s, A.yz * s, A.zz * s}};
+}
+
+/// mu A g_b (A g_a)^T + lambda A g_a (A g_b)^T: of linear elasticity, which has mu g_a . g_b besides, with A = R; of
+/// viscous forces, which have mu A A^T g_a . g_b and their stress besides, with A = F.
+struct Projected {
+  Lanes mu, lambda;
+  Gradients moved;  ///< A g
+
+  Matrix operator()(int a, int b) const {
+    return outer(moved.of[b], moved.of[a] * mu) + outer(moved.of[a] * lambda, moved.of[b]);
+  }
+};
+
+Projected viscosity(const Part& part, const Matrix& F, const Gradients& g, double rate) {
+  return {rate * part(part.batch.viscous_mu), rate * part(part.batch.viscous_lambda), F * g};
+}
+
+/// s + mu F F^T.
+Symmetric square(const Matrix& F, const Lanes& mu, const Lanes& s) {
+  const Vector x = {F.c0.x, F.c1.x, F.c2.x}, y = {F.c0.y, F.c1.y, F.c2.y}, z = {F.c0.z, F.c1.z, F.c2.z};
+  return {s + mu * dot(x, x), s + mu * dot(y, y), s + mu * dot(z, z), mu * dot(x, y), mu * dot(y, z), mu * dot(z, x)};
+}
+
+void definite(const TetBatch& batch, const TetFrames& frames, double rate, TetStiffness& stiffness) {
+  each_part(batch, [&](const Part& part) {
+    const Matrix F = part(frames.F);
+    const Gradients g = gradients(part);
+    const Projected elastic = {part(batch.mu), part(batch.lambda), part(frames.R) * g};
+    const Projected viscous = viscosity(part, F, g, rate);
+    const Symmetric common = square(F, viscous.mu, elastic.mu);
+    put_blocks(part, stiffness,
+               [&](int a, int b) { return common * dot(g.of[a], g.of[b]) + elastic(a, b) + viscous(a, b); });
+  });
+}
+
+Symmetric inverse(const Symmetric& A) {
+  const Lanes xx = A.yy * A.zz - A.yz * A.yz, xy = A.yz * A.zx - A.xy * A.zz, zx = A.xy * A.yz - A.yy * A.zx;
+  const Lanes by = 1.0 / (A.xx * xx + A.xy * xy + A.zx * zx);
+  return {xx * by, (A.zz * A.xx - A.zx * A.zx) * by, (A.xx * A.yy - A.xy * A.xy) * by,
+          xy * by, (A.xy * A.zx - A.xx * A.yz) * by, zx * by};
+}
+
+// With T = F R^T and w the turning of R for motions u_a of the nodes, (tr T - T) w = sum_a (R g_a) x u_a, the second
+// variation of the energy is 2 mu |dF|^2 + lambda (R . dF)^2 + (lambda tr(R^T F - 1) - 2 mu) w . (tr T - T) w.
+// (A rotation that was found in so few iterations has no stretches so far apart that tr T - T would be singular.)
+void exact(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate, TetStiffness& stiffness) {
+  each_part(batch, [&](const Part& part) {
+    const Matrix F = part(frames.F), R = part(frames.R);
+    const Gradients g = gradients(part), t = R * g;
+    const Vector Fx = {F.c0.x, F.c1.x, F.c2.x}, Fy = {F.c0.y, F.c1.y, F.c2.y}, Fz = {F.c0.z, F.c1.z, F.c2.z};
+    const Vector Rx = {R.c0.x, R.c1.x, R.c2.x}, Ry = {R.c0.y, R.c1.y, R.c2.y}, Rz = {R.c0.z, R.c1.z, R.c2.z};
+    const Lanes Txx = dot(Fx, Rx), Tyy = dot(Fy, Ry), Tzz = dot(Fz, Rz);
+    const Symmetric H = inverse({Tyy + Tzz, Tzz + Txx, Txx + Tyy, -0.5 * (dot(Fx, Ry) + dot(Fy, Rx)),
+                                 -0.5 * (dot(Fy, Rz) + dot(Fz, Ry)), -0.5 * (dot(Fz, Rx) + dot(Fx, Rz))});
+    const Lanes mu = 2.0 * part(batch.mu), lambda = part(batch.lambda), turning = lambda * (Txx + Tyy + Tzz - 3.0) - mu;
+    // turning H [t_b]x by columns
+    Matrix turned[4];
+    for (int b = 0; b < 4; ++b) {
+      const Vector own = t.of[b] * turning;
+      const Lanes none = {};
+      turned[b] = {H * Vector{none, own.z, -own.y}, H * Vector{-own.z, none, own.x}, H * Vector{own.y, -own.x, none}};
+    }
+    const Projected viscous = viscosity(part, F, g, rate);
+    const Symmetric common = square(F, viscous.mu, mu);
+    const Symmetric S = rate > 0.0 ? viscous_stress(part, F, motion, rate) : Symmetric{};
+    put_blocks(part, stiffness, [&](int a, int b) {
+      const Vector& ta = t.of[a];
+      Matrix K = common * dot(g.of[a], g.of[b]) + outer(ta * lambda, t.of[b]) + viscous(a, b) +
+                 Matrix{cross(turned[b].c0, ta), cross(turned[b].c1, ta), cross(turned[b].c2, ta)};
+      const Lanes stress = dot(g.of[a], S * g.of[b]);
+      K.c0.x += stress;
+      K.c1.y += stress;
+      K.c2.z += stress;
+      return K;
+    });
+  });
+}
 
 /// Columns of blocks come as one number of eight elements after the other, and go as three numbers of one element.
 void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers) {
@@ -195,16 +332,8 @@ void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers
     for (int column = 0; column < 3; ++column) {
       const Eight* rows = stiffness.block[k] + 3 * column;
       for (int first = 0; first < kBatch; first += 4) {
-        const Four a = four(rows[0] + first), b = four(rows[1] + first), c = four(rows[2] + first), none = {};
-        const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-        const Four c02 = __builtin_shufflevector(c, none, 0, 4, 2, 6),
-                   c13 = __builtin_shufflevector(c, none, 1, 5, 3, 7);
-        double* const own = numbers + 4 * column;
-        const std::uint32_t* at = places.block[k] + first;
-        add_four(own + at[0], __builtin_shufflevector(ab02, c02, 0, 1, 4, 5));
-        add_four(own + at[1], __builtin_shufflevector(ab13, c13, 0, 1, 4, 5));
-        add_four(own + at[2], __builtin_shufflevector(ab02, c02, 2, 3, 6, 7));
-        add_four(own + at[3], __builtin_shufflevector(ab13, c13, 2, 3, 6, 7));
+        const FourVectors own = turned(four(rows[0] + first), four(rows[1] + first), four(rows[2] + first));
+        for (int i = 0; i < 4; ++i) add_four(numbers + 4 * column + places.block[k][first + i], own.of[i]);
       }
     }
   }
@@ -212,6 +341,6 @@ void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers
 
 }  // namespace
 
-const TetKernels SINEW_KERNELS{SINEW_NAME, forces, stiffness, add};
+const TetKernels SINEW_KERNELS{SINEW_NAME, frames, add_forces, definite, exact, add};
 
 }  // namespace sinew::solid

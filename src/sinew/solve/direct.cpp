@@ -38,10 +38,11 @@ class Dense {
  public:
   explicit Dense(Eigen::MatrixXd& K) : K_(K) {}
   void add(int i, int j, double value) { K_(i, j) += value; }
-  /// Subtracts a matrix over the border unknowns `shift` + at.
-  void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M) {
+  /// Subtracts a matrix over the border unknowns `shift` + at; of a symmetric one only the lower triangle counts.
+  void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M, bool symmetric) {
     for (Eigen::Index b = 0; b < M.cols(); ++b) {
-      for (Eigen::Index a = 0; a < M.rows(); ++a) K_(shift + at[a], shift + at[b]) -= M(a, b);
+      for (Eigen::Index a = 0; a < M.rows(); ++a)
+        K_(shift + at[a], shift + at[b]) -= symmetric && a < b ? M(b, a) : M(a, b);
     }
   }
 
@@ -52,32 +53,51 @@ class Dense {
 /// The same of a symmetric matrix, in the order of its elimination: half of it is enough.
 class Half {
  public:
-  Half(linalg::SymmetricFactor& factor, const std::vector<int>& place) : factor_(factor), place_(place) {}
+  Half(linalg::SymmetricFactor& factor, const std::vector<int>& place, std::vector<linalg::Run>& runs)
+      : factor_(factor), place_(place), runs_(runs) {}
   void add(int i, int j, double value) {
     if (place_[i] >= place_[j]) factor_.column(place_[j])[place_[i]] += value;
   }
-  void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M) {
-    const auto n = static_cast<int>(M.cols());
-    bool ascending = true;
-    for (int a = 1; a < n; ++a) ascending &= place_[shift + at[a - 1]] < place_[shift + at[a]];
-    for (int b = 0; b < n; ++b) {
-      const int own = place_[shift + at[b]];
-      double* const column = factor_.column(own);
-      for (int a = b; a < n; ++a) {
-        const int other = place_[shift + at[a]];
-        if (ascending || other > own) {
-          column[other] -= M(a, b);
-        } else {
-          // The same unknown twice stands on both sides of the diagonal.
-          factor_.column(other)[own] -= a != b && other == own ? 2.0 * M(a, b) : M(a, b);
-        }
+  void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M, bool) {
+    runs_.clear();
+    for (int a = 0; a < static_cast<int>(at.size()); ++a) {
+      const int place = place_[shift + at[a]];
+      if (!runs_.empty() && runs_.back().into + runs_.back().length == place) {
+        ++runs_.back().length;
+      } else {
+        runs_.push_back({a, place, 1});
       }
+    }
+    for (std::size_t c = 0; c < runs_.size(); ++c) {
+      for (std::size_t r = c; r < runs_.size(); ++r) subtract(runs_[r], runs_[c], M);
     }
   }
 
  private:
+  /// Its rows and columns that are runs of both, below the diagonal of M.
+  void subtract(const linalg::Run& rows, const linalg::Run& columns, const Eigen::MatrixXd& M) {
+    const bool same = rows.row == columns.row;
+    const bool apart = rows.into >= columns.into + columns.length || columns.into >= rows.into + rows.length;
+    if (same || (apart && rows.into > columns.into)) {
+      for (int b = 0; b < columns.length; ++b) {
+        double* const to = factor_.column(columns.into + b) + rows.into;
+        const double* const from = &M(rows.row, columns.row + b);
+        for (int a = same ? b : 0; a < rows.length; ++a) to[a] -= from[a];
+      }
+      return;
+    }
+    for (int b = 0; b < columns.length; ++b) {
+      for (int a = 0; a < rows.length; ++a) {
+        const auto [first, last] = std::minmax({columns.into + b, rows.into + a});
+        // The same unknown twice stands on both sides of the diagonal.
+        factor_.column(first)[last] -= (first == last ? 2.0 : 1.0) * M(rows.row + a, columns.row + b);
+      }
+    }
+  }
+
   linalg::SymmetricFactor& factor_;
   const std::vector<int>& place_;
+  std::vector<linalg::Run>& runs_;
 };
 
 /// What the border is without chains.
@@ -90,7 +110,7 @@ void fill_bare(const CoupledProblem& problem, Border& border) {
     border.add(column, nz + row, value);
   }
   for (const auto& [row, column, value] : problem.W) border.add(nz + row, nz + column, -value);
-  for (const VolumePart& volume : problem.volumes) border.subtract(volume.at, nz, volume.W);
+  for (const VolumePart& volume : problem.volumes) border.subtract(volume.at, nz, volume.W, volume.symmetric);
 }
 
 auto base_of(const ChainPart& part, Eigen::VectorXd& y) { return y.segment(part.first_base, part.base.cols()); }
@@ -211,7 +231,12 @@ void CoupledFactor::place() {
       if (i >= nz) place_[i] = kYields;
     });
   }
-  int next = 0;
+  int next = 0;  // a volume's rows as they come, so that its W can be copied
+  for (const VolumePart& volume : problem.volumes) {
+    for (const int row : volume.at) {
+      if (place_[nz + row] == kYields) place_[nz + row] = next++;
+    }
+  }
   for (int i = nz; i < size; ++i) {
     if (place_[i] == kYields) place_[i] = next++;
   }
@@ -231,7 +256,8 @@ void CoupledFactor::place() {
   for (const auto& entry : problem.W) tie(nz + entry.row, nz + entry.column);
   for (const VolumePart& volume : problem.volumes) {
     if (volume.at.empty()) continue;
-    const int first = *std::min_element(volume.at.begin(), volume.at.end());  // rows keep their order
+    const int first = *std::min_element(volume.at.begin(), volume.at.end(),
+                                        [&](int a, int b) { return place_[nz + a] < place_[nz + b]; });
     for (const int row : volume.at) tie(nz + first, nz + row);
   }
   for (const ChainPart& part : problem.chains) {
@@ -281,7 +307,7 @@ bool CoupledFactor::factor_symmetric() {
   const int size = border_size(problem);
   place();
   symmetric_.start(size);
-  Half border(symmetric_, place_);
+  Half border(symmetric_, place_, runs_);
   fill(border);
   weigh();
   if (!scale_.allFinite() || !symmetric_.factor(begin_, least_)) return false;
@@ -325,7 +351,7 @@ void CoupledFactor::fill(Border& border) {
     const linalg::ChainFactor& factor = factors_[n];
     const linalg::ChainFactor::Condensed& condensed = condensed_[n];
     const auto nb = static_cast<int>(part.base.cols());
-    border.subtract(part.at, 0, condensed.W);
+    border.subtract(part.at, 0, condensed.W, false);
     for (int i = 0; i < nb; ++i) {
       const Vec6 felt = factor.base_response().transpose() * part.base.col(i);
       const int own = part.first_base + i;
@@ -443,7 +469,13 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
     const auto count = static_cast<Eigen::Index>(volume.at.size());
     forces_.resize(count);
     for (Eigen::Index i = 0; i < count; ++i) forces_[i] = lambda[volume.at[i]];
-    for (Eigen::Index i = 0; i < count; ++i) left[nz + volume.at[i]] += volume.W.row(i).dot(forces_);
+    moved_.resize(count);
+    if (volume.symmetric) {
+      moved_.noalias() = volume.W.selfadjointView<Eigen::Lower>() * forces_;
+    } else {
+      moved_.noalias() = volume.W.lazyProduct(forces_);
+    }
+    for (Eigen::Index i = 0; i < count; ++i) left[nz + volume.at[i]] += moved_[i];
   }
   double relative = 0.0;
   rest.chains.resize(problem.chains.size());

@@ -37,9 +37,9 @@ class Entries {
 
 /// A volume as its rows feel it.
 struct VolumePart {
-  std::vector<int> at;  ///< the rows it takes part in
-  Eigen::MatrixXd W;    ///< H A_x^-1 H^T over them
-  bool symmetric = true;
+  std::vector<int> at;    ///< the rows it takes part in
+  Eigen::MatrixXd W;      ///< H A_x^-1 H^T over them
+  bool symmetric = true;  ///< only the lower triangle of W counts
 };
 
 /// The strains of one rod: A x + U^T T y_b + R^T y = -r, where y_b are its base's coordinates, y all border unknowns.
@@ -140,7 +140,8 @@ class CoupledFactor {
   std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
 
   Eigen::VectorXd scale_;  ///< D: D K D has entries near one
-  Eigen::VectorXd diagonal_, largest_, y_, left_, forces_;
+  Eigen::VectorXd diagonal_, largest_, y_, left_, forces_, moved_;
+  std::vector<linalg::Run> runs_;
   struct ChainRoom {
     Eigen::VectorXd attached, answer;
   };
