@@ -58,6 +58,7 @@ void print_rod(const RodModel& model) {
 
 void print(const Tie& tie, const CouplingFacts& facts) {
   const std::string holder = tie.solid   ? "solid " + *tie.solid
+                             : tie.body  ? "body " + *tie.body
                              : tie.other ? "rod " + *tie.other
                              : tie.frame ? "frame " + *tie.frame
                                          : "the ground";
@@ -65,6 +66,10 @@ void print(const Tie& tie, const CouplingFacts& facts) {
   if (facts.outside > 0)
     fmt::print("  the point lies {:.3g} mm outside the mesh and is tied to the nearest element\n",
                1e3 * facts.farthest);
+}
+
+void print(const Glue& glue, const CouplingFacts& facts) {
+  fmt::print("{} nodes of solid {} carried by body {}\n", facts.kept, glue.solid, glue.body);
 }
 
 void print(const Slide& slide, const CouplingFacts& facts) {

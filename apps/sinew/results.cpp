@@ -31,7 +31,30 @@ io::RecordedStep recorded(const Model& model, const State& state, const StepRepo
           pack(state)};
 }
 
+void add(const ContactReport& step, ContactReport& all) {
+  all.contacts = std::max(all.contacts, step.contacts);
+  all.penetration = std::max(all.penetration, step.penetration);
+  all.sweeps += step.sweeps;
+  all.newton += step.newton;
+  all.unsolved += step.unsolved;
+  all.left.complementarity = std::max(all.left.complementarity, step.left.complementarity);
+  all.left.cone = std::max(all.left.cone, step.left.cone);
+  all.left.dissipation = std::max(all.left.dissipation, step.left.dissipation);
+}
+
 namespace {
+
+Json contact_json(const ContactReport& contact) {
+  return {{"most_contacts", contact.contacts},
+          {"deepest_penetration_m", contact.penetration},
+          {"sweeps", contact.sweeps},
+          {"newton", contact.newton},
+          {"unsolved_problems", contact.unsolved},
+          {"largest_residual",
+           {{"complementarity", contact.left.complementarity},
+            {"cone", contact.left.cone},
+            {"dissipation", contact.left.dissipation}}}};
+}
 
 /// Median and maximum of one stage over all steps [ms].
 Json stage_json(const std::vector<StageTimes>& times, double StageTimes::*stage) {
@@ -126,6 +149,9 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["summary"]["steps_with_rotated_tangent"] = summary.rotated;
     report["summary"]["most_inverted_elements"] = summary.most_inverted;
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;
+    report["summary"]["parts_of_halved_steps"] = summary.halved;
+    if (!loaded.model.pairs.empty() || !loaded.model.rubbing.empty())
+      report["summary"]["contact"] = contact_json(summary.contact);
     report["time_per_step"]["threads"] = summary.threads;
     for (const Stage& stage : kStages) report["time_per_step"][stage.name] = stage_json(summary.times, stage.seconds);
   }

@@ -96,7 +96,9 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
         summary.times.push_back(report.times);
         summary.rotated += report.rotated ? 1 : 0;
         summary.redundant += report.redundant ? 1 : 0;
+        summary.halved += report.halvings > 0 ? 1 : 0;
         unstable = report.unstable;
+        add(report.contact, summary.contact);
         if (model.scene.analysis != Analysis::modal)  // (what a mode's picture does is no state)
           summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
         last = state;

@@ -80,7 +80,8 @@ TEST(Profile, ShowsEveryStage) {
   const SceneFolder scene;
   const Finished done = sinew(scene.run("out", {"--profile"}));
   ASSERT_EQ(done.code, 0) << said(done);
-  for (const char* part : {"20 steps", "forces", "assembly", "factor", "compliance", "rods", "solve", "whole step"})
+  for (const char* part :
+       {"20 steps", "forces", "assembly", "factor", "compliance", "rods", "solve", "contact", "whole step"})
     EXPECT_NE(done.out.find(part), std::string::npos) << part << "\n" << done.out;
 }
 

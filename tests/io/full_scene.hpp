@@ -192,6 +192,17 @@ outputs:
   where: {body: cube}
   weight: {body: cube, quantity: force}
   press: {between: [cube, floor]}
+couplings:
+  - glue: {solid: finger, body: cube, box: [[0, 0, 0], [1 mm, 1 mm, 1 mm]], in: world}
+  - glue: {solid: finger, body: cube, sphere: {center: [0, 0, 10 mm], radius: 5 mm}}
+  - glue: {solid: finger, body: cube, plane: {point: [0, 0, 0], normal: [1, 0, 0], within: 0.1 mm}}
+  - glue: {solid: finger, body: cube, nodes: [0, 3, 17]}
+  - glue: {solid: finger, body: cube, group: base}
+  - glue: {solid: finger, body: cube, surface: true}
+  - tie: {rod: stem, body: ball}
+solids: {finger: {mesh: finger.vtk, material: {young: 600 kPa, poisson: 0.45}, mass: 75 g}}
+rods:
+  stem: {path: [[0, 0, 0], [100 mm, 0, 0]], section: {circle: {radius: 1 mm}}, material: {young: 1 MPa, poisson: 0.4, density: 1000}}
 )";
 
 inline constexpr const char* solids_scene = R"(# Solids of every law, held and loaded by every kind of region.

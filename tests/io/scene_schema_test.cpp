@@ -117,7 +117,7 @@ TEST(SceneSchema, ResolvesItsReferencesAndShowsDefaults) {
   const Json& coupling = schema.at("/properties/couplings/items"_json_pointer);
   EXPECT_EQ(coupling.at("/properties/tie/properties/along/default"_json_pointer), (Json{"x", "y", "z"}));
   EXPECT_EQ(coupling.at("/allOf/0/oneOf"_json_pointer),
-            Json::parse(R"([{"required": ["slide"]}, {"required": ["tie"]}])"));
+            Json::parse(R"([{"required": ["slide"]}, {"required": ["tie"]}, {"required": ["glue"]}])"));
   EXPECT_EQ(schema.at("/properties/loads/additionalProperties/anyOf/0/properties/follower/examples/0"_json_pointer),
             true);
 }

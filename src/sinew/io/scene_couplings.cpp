@@ -43,10 +43,11 @@ Type<Tie> tie() {
        {field<Tie>({"rod", required, "the rod whose point is held", "cable"}, &Tie::rod, name_of("rod")),
         field<Tie>({"at", optional, "the abscissa of that point [m]; its tip if left out", "50 mm"}, &Tie::at,
                    quantity(Dimension::length, at_least(0.0))),
-        field<Tie>(
-            {"frame", optional, "the frame that holds it; the ground if there is no frame, solid or other", "hand"},
-            &Tie::frame, name_of("frame")),
+        field<Tie>({"frame", optional, "the frame that holds it; the ground if there is no frame, solid, body or other",
+                    "hand"},
+                   &Tie::frame, name_of("frame")),
         field<Tie>({"solid", optional, "the solid that holds it", "finger"}, &Tie::solid, name_of("solid")),
+        field<Tie>({"body", optional, "the rigid body that holds it", "disc"}, &Tie::body, name_of("body")),
         field<Tie>({"other", optional, "the other rod that holds it", "spine"}, &Tie::other, name_of("rod")),
         field<Tie>({"other_at", optional, "the abscissa on the other rod [m]; its tip if left out", "50 mm"},
                    &Tie::other_at, quantity(Dimension::length, at_least(0.0))),
@@ -56,8 +57,18 @@ Type<Tie> tie() {
                    axes({0, 3})),
         field<Tie>({"reach", optional, "how far outside the solid's mesh the point may lie [m]", "2 mm"}, &Tie::reach,
                    quantity(Dimension::length, at_least(0.0)))},
-       {at_most_one({"frame", "solid", "other"}), needs("other_at", "other"), needs("reach", "solid")},
+       {at_most_one({"frame", "solid", "body", "other"}), needs("other_at", "other"), needs("reach", "solid")},
        check});
+}
+
+Type<Glue> glue() {
+  return map<Glue>(
+      {"a glue",
+       together<Glue>(
+           {field<Glue>({"solid", required, "the solid that is glued", "finger"}, &Glue::solid, name_of("solid")),
+            field<Glue>({"body", required, "the rigid body that carries it", "plate"}, &Glue::body, name_of("body"))},
+           region_fields<Glue>(&Glue::region)),
+       {exactly_one(region_names())}});
 }
 
 }  // namespace
@@ -66,7 +77,9 @@ Type<Coupling> coupling() {
   return one_of_kinds<Coupling>(
       "a coupling",
       {kind<Coupling>("slide", "a rod that slides through a solid", "{rod: cable, solid: finger, points: 15}", slide()),
-       kind<Coupling>("tie", "a point of a rod that is held", "{rod: cable, at: 50 mm, frame: hand}", tie())});
+       kind<Coupling>("tie", "a point of a rod that is held", "{rod: cable, at: 50 mm, frame: hand}", tie()),
+       kind<Coupling>("glue", "nodes of a solid that a rigid body carries",
+                      "{solid: finger, body: plate, plane: {point: [0, 0, 0], normal: [1, 0, 0]}}", glue())});
 }
 
 }  // namespace sinew::io

@@ -145,6 +145,23 @@ void build_obstacle(Model& model, const std::string& name, const Obstacle& obsta
   model.obstacles.push_back(own);
 }
 
+namespace {
+
+/// Whether a coupling holds one to the other: they do not touch unless a pair says so.
+bool joined(const Model& model, const Collider& a, const Collider& b) {
+  const std::string one = name_of(model, a), other = name_of(model, b);
+  const auto are = [&](const std::string& first, const std::string& second) {
+    return (one == first && other == second) || (one == second && other == first);
+  };
+  return std::any_of(model.scene.couplings.begin(), model.scene.couplings.end(), [&](const Coupling& coupling) {
+    if (const Glue* glue = std::get_if<Glue>(&coupling)) return are(glue->solid, glue->body);
+    const Tie* tie = std::get_if<Tie>(&coupling);
+    return tie && tie->body && are(tie->rod, *tie->body);
+  });
+}
+
+}  // namespace
+
 void build_pairs(Model& model) {
   const Contact& contact = model.scene.contact;
   require_not_negative(contact.friction, "contact.friction", "0 for none, 0.5 for rubber on plastic");
@@ -182,7 +199,7 @@ void build_pairs(Model& model) {
       const auto own = std::find_if(chosen.begin(), chosen.end(),
                                     [&](const Chosen& c) { return (c.a == a && c.b == b) || (c.a == b && c.b == a); });
       const ContactPair* said = own == chosen.end() ? nullptr : own->own;
-      if ((said && said->off) || (!said && (!one_rigid || i == j))) continue;
+      if ((said && said->off) || (!said && (!one_rigid || i == j || joined(model, a, b)))) continue;
       PairModel pair{a, b, contact.friction, contact.restitution};
       if (said) {
         pair.friction = said->friction.value_or(pair.friction);

@@ -114,7 +114,8 @@ void check_held(Model& model, int number) {
   const std::string path = "solids." + solid.name, motions = in_words(free, solid.mesh.diagonal);
   const bool coupled =
       std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& p) { return p.solid == number; }) ||
-      std::any_of(model.ties.begin(), model.ties.end(), [&](const TieModel& tie) { return tie.solid == number; });
+      std::any_of(model.solid_rows.begin(), model.solid_rows.end(),
+                  [&](const SolidRow& row) { return row.solid == number; });
   if (coupled || model.scene.analysis == Analysis::dynamic) {
     model.warnings.push_back(path + ": what is fixed and its springs leave it free to " + motions +
                              (coupled ? ", but for its couplings" : ""));

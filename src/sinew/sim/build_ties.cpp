@@ -82,8 +82,8 @@ void build_coupling(Model& model, int number, const Tie& tie) {
   const double s = abscissa_on(model, rod, tie.at, path + ".at");
   const std::vector<int> along = chosen(tie.along), about = chosen(tie.about);
   if (along.empty() && about.empty()) reject(path, tie.rod, "holds nothing", "name axes in `along` or `about`");
-  if (tie.frame.has_value() + tie.solid.has_value() + tie.other.has_value() > 1)
-    reject(path, tie.rod, "can be held by one of frame, solid and other", "write one tie for each");
+  if (tie.frame.has_value() + tie.solid.has_value() + tie.body.has_value() + tie.other.has_value() > 1)
+    reject(path, tie.rod, "can be held by one of frame, solid, body and other", "write one tie for each");
   const Vec3 position = rod::position(start_shape(model.rods[rod]), s);
   CouplingFacts facts;
   facts.rod = rod;
@@ -125,12 +125,49 @@ void build_coupling(Model& model, int number, const Tie& tie) {
     own.directors = needs_directors(own);
     return;
   }
+  if (tie.body) {
+    const int body = find(model.scene.bodies, *tie.body, path + ".body", "body");
+    const rigid::Motion& start = model.bodies[body].start;
+    TieModel& own = add_tie(model, number, rod, s, start.R);
+    own.rigid = body;
+    own.other_offset = start.R.transpose() * (position - start.p);
+    own.along = along;
+    own.about = about;
+    own.directors = needs_directors(own);
+    return;
+  }
   const rod::Mat3 axes = frame < 0 ? rod::Mat3::Identity() : frame_at(model.scene.frames[frame].second, 0.0).R;
   TieModel& own = add_tie(model, number, rod, s, axes);
   own.frame = frame;
   own.along = along;
   own.about = about;
   warn_of_idle_rows(model, own, path);
+}
+
+void build_coupling(Model& model, int number, const Glue& glue) {
+  const std::string path = "couplings." + std::to_string(number) + ".glue";
+  const int solid = find(model.scene.solids, glue.solid, path + ".solid", "solid"),
+            number_of_body = find(model.scene.bodies, glue.body, path + ".body", "body");
+  const SolidModel& own = model.solids[solid];
+  const rigid::Motion& start = model.bodies[number_of_body].start;
+  CouplingFacts facts;
+  for (const int node : select(own, glue.region, path).nodes) {
+    ++facts.asked;
+    const Eigen::Vector3i unknown = own.body.unknown.col(node);
+    if (unknown.minCoeff() < 0) continue;
+    ++facts.kept;
+    SolidRow row;
+    row.solid = solid;
+    row.where = solid::at_node(own.body.rest, own.body.cells, node);
+    row.body = number_of_body;
+    row.arm = start.R.transpose() * (own.body.rest.col(node) - start.p);
+    model.solid_rows.push_back(row);
+  }
+  if (facts.kept < facts.asked) {
+    reject(path, glue.solid, std::to_string(facts.asked - facts.kept) + " of its nodes are held by `fixed` already",
+           "glue nodes that are free, or leave them out of `fixed`");
+  }
+  model.couplings.push_back(facts);
 }
 
 }  // namespace sinew::building

@@ -222,7 +222,12 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
       problem_.b[k + 2] = 0.0;
     }
     if (turn > 0 && changed <= kTolerance * largest) break;
-    report_ = coulomb_.solve(problem_, kTolerance, lambda_);
+    const solve::CoulombReport found = coulomb_.solve(problem_, kTolerance, lambda_);
+    report_.contacts = contacts();
+    report_.sweeps += found.sweeps;
+    report_.newton += found.newton;
+    report_.unsolved += found.solved ? 0 : 1;
+    report_.left = found.residual;
     respond(context, free, factor, lambda_ - old_);
     rows_ = iterate.lambda + solution.dlambda + answer_.dlambda;
     if (rubbing_.empty()) break;

@@ -37,7 +37,9 @@ class ContactForces {
   /// `prepare`; that of the first is not known, and infinite.
   double error(const StepContext& context, const State& iterate, const ContactRoom& room) const;
 
-  const solve::CoulombReport& report() const { return report_; }
+  /// Of the problems since they were last `forgotten`.
+  const ContactReport& report() const { return report_; }
+  void forget() { report_ = {}; }
   const solve::CoulombProblem& problem() const { return problem_; }
 
  private:
@@ -85,7 +87,7 @@ class ContactForces {
   solve::CoupledSolution answer_;
   solve::CoulombProblem problem_;
   solve::Coulomb coulomb_;
-  solve::CoulombReport report_;
+  ContactReport report_;
   std::vector<Eigen::MatrixXd> moved_;  ///< of each rod, its coordinates by each row
   Eigen::VectorXd lambda_, old_, own_, rows_;
 };

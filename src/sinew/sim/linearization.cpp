@@ -36,7 +36,10 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   free_.resize(solids);
   factored_.assign(solids, Factored::failed);
   reduced_.problem.volumes.resize(solids);
-  evaluate_contacts(context, iterate, contacts_);
+  {
+    const Clock clock(times.contact);
+    evaluate_contacts(context, iterate, contacts_);
+  }
   contacts_ready_ = false;
   beside(
       [&](std::size_t i, StageTimes& own) {
@@ -60,6 +63,12 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
     largest_ = std::max(largest_, own.largest);
     scale_ = std::max(scale_, own.scale);
   }
+}
+
+ContactReport Linearization::contact_report() const {
+  ContactReport report = contact_forces_.report();
+  for (const Touch& touch : contacts_.touches) report.penetration = std::max(report.penetration, -touch.u[0]);
+  return report;
 }
 
 bool Linearization::finite() const {
@@ -176,9 +185,15 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
   const Model& model = context_->model;
   factor_.solve(side, increment.reduced);
   if (ContactForces::wanted(model, contacts_) && increment.reduced.ok) {
-    if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);
-    contacts_ready_ = true;
-    contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces);
+    double spent = 0.0;
+    {
+      const Clock clock(spent);
+      if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);
+      contacts_ready_ = true;
+      contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces);
+    }
+    times_->contact += spent;
+    times_->solve -= spent;  // whose clock runs
   } else {
     increment.forces = {};
   }

@@ -38,6 +38,9 @@ class Linearization {
   ContactRoom& contacts() { return contacts_; }
   /// [m] how far the forces of contacts are from what their laws ask for.
   double contact_error() const { return contact_forces_.error(*context_, *iterate_, contacts_); }
+  /// Of contacts at the iterate, and of all that was solved for them since they were last `forgotten`.
+  ContactReport contact_report() const;
+  void forget_contacts() { contact_forces_.forget(); }
   /// The last problem of contacts that was solved.
   const solve::CoulombProblem& contact_problem() const { return contact_forces_.problem(); }
 

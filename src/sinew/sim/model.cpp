@@ -67,6 +67,10 @@ void number_ties(Model& model) {
     }
   }
   model.followed = model.unknowns - model.first_followed;
+  for (; next < model.solid_rows.size(); ++next, model.rows += 3) {  // what is glued
+    rows.push_back(model.solid_rows[next]);
+    rows.back().row = model.rows;
+  }
   model.solid_rows = std::move(rows);
   for (std::size_t k = 0; k < model.points.size(); ++k) {
     SolidRow row;

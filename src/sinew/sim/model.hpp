@@ -150,19 +150,22 @@ struct SolidRow {
   int solid = 0;
   solid::EmbeddedPoint where;
   int row = 0;
-  int point = -1;    ///< the sliding point or anchor they belong to; they are off while it is
-  int unknown = -1;  ///< or the three unknowns z that they hold to it, for a tie
+  int point = -1;           ///< the sliding point or anchor they belong to; they are off while it is
+  int unknown = -1;         ///< or the three unknowns z that they hold to it, for a tie
+  int body = -1;            ///< or the rigid body that carries it
+  Vec3 arm = Vec3::Zero();  ///< [m] from its centre of mass, in its axes
 };
 
-/// A material point of a rod held by the ground, a frame, a solid or another rod (sim/ties.cpp).
+/// A material point of a rod held by the ground, a frame, a solid, a rigid body or another rod (sim/ties.cpp).
 struct TieModel {
   int rod = 0, coupling = 0;
   double s = 0.0;                                ///< [m]
   Placement holder;                              ///< axes of the holder and the point held, at t = 0 in the world
   int frame = -1;                                ///< of a holder that is no body
-  int solid = -1, other = -1;                    ///< or a body
+  int solid = -1, rigid = -1, other = -1;        ///< or a body
   double other_s = 0.0;                          ///< [m] abscissa on the other rod
-  Vec3 other_offset = Vec3::Zero();              ///< [m] of the point held, in the other rod's cross-section
+  Vec3 other_offset = Vec3::Zero();              ///< [m] of the point held, in the other rod's cross-section or the
+                                                 ///< rigid body's axes, from its centre of mass
   rod::Mat3 other_axes = rod::Mat3::Identity();  ///< the holder's axes there
   rod::Mat3 own_axes = rod::Mat3::Identity();    ///< the holder's axes in this rod's cross-section, at t = 0
   std::vector<int> along, about;
@@ -170,8 +173,8 @@ struct TieModel {
   int row = 0;          ///< first of its rows: along, then about
   int unknown = -1;     ///< of a body: place of the point held (3) and, with `directors`, of its axes (9)
   bool directors = false;
-  int body_row = -1;  ///< of another rod: first of the rows that hold these unknowns to it
-  bool body() const { return solid >= 0 || other >= 0; }
+  int body_row = -1;  ///< first of the rows that hold these unknowns to it
+  bool body() const { return solid >= 0 || rigid >= 0 || other >= 0; }
 };
 
 struct ActuatorModel {

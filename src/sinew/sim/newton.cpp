@@ -107,7 +107,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   Linearization& here = memory.here;
   Increment& increment = memory.increment;
   double stiffness = 0.0;
-  const auto fail = [&report](Status status, std::string detail) {
+  const auto fail = [&](Status status, std::string detail) {
+    report.contact = here.contact_report();
     report.status = status;
     report.detail = std::move(detail);
     return report;
@@ -116,9 +117,11 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     finish(context, iterate.state, memory.room);
     finish_contacts(here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
+    report.contact = here.contact_report();
     return report;
   };
   memory.search.begin();
+  here.forget_contacts();
   for (;; ++report.newton) {
     if (report.newton == 0 || rules.across) {
       at(iterate.t, context);

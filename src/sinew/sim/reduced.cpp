@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sinew/constraint/sliding.hpp"
+#include "sinew/lie/rotation.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
 
@@ -113,6 +114,56 @@ void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
   }
 }
 
+/// Three rows that a rigid body takes part in: `sign` times a point at r from its centre of mass or, without
+/// `displaced`, a vector r carried with it. With P = p + exp(theta) r the second variation of lambda . P is
+/// (lambda . theta) (r . theta) - (lambda . r) |theta|^2.
+void add_body_rows(const BodyModel& body, int row, const Vec3& r, double sign, bool displaced, const Vec3& lambda,
+                   Reduced& reduced) {
+  solve::CoupledProblem& problem = reduced.problem;
+  const rod::Mat3 turned = sign * lie::hat(r);  // -sign dP / dtheta
+  if (displaced) {
+    for (int i = 0; i < 3; ++i) problem.G.add(row + i, body.unknown + i, -sign);
+    problem.r.segment<3>(body.unknown) -= sign * lambda;
+  }
+  problem.G.add(row, body.unknown + 3, turned);
+  problem.r.segment<3>(body.unknown + 3) += turned.transpose() * lambda;
+  const rod::Mat3 half = 0.5 * sign * lambda * r.transpose();
+  problem.B.add(body.unknown + 3, body.unknown + 3,
+                rod::Mat3(sign * lambda.dot(r) * rod::Mat3::Identity() - half - half.transpose()));
+  reduced.scale = std::max(reduced.scale, displaced ? lambda.norm() : 0.0);
+}
+
+/// What rigid bodies carry: points and axes that ties follow, nodes of solids.
+void add_carried(const StepContext& context, const State& iterate, Reduced& reduced) {
+  const Model& model = context.model;
+  solve::CoupledProblem& problem = reduced.problem;
+  for (const TieModel& tie : model.ties) {
+    if (tie.rigid < 0) continue;
+    const BodyModel& body = model.bodies[tie.rigid];
+    const rigid::Motion& now = iterate.bodies[tie.rigid];
+    const auto follow = [&](int k, const Vec3& r, bool displaced) {
+      const int row = tie.body_row + 3 * k, unknown = tie.unknown + 3 * k;
+      const Vec3 lambda = iterate.lambda.segment<3>(row);
+      const Vec3 gap = (displaced ? Vec3(now.p + r) : r) - iterate.followed.segment<3>(unknown - model.first_followed);
+      problem.c.segment<3>(row) = gap;
+      for (int i = 0; i < 3; ++i) problem.G.add(row + i, unknown + i, 1.0);
+      problem.r.segment<3>(unknown) += lambda;
+      add_body_rows(body, row, r, 1.0, displaced, lambda, reduced);
+      reduced.violation = std::max(reduced.violation, gap.norm());
+    };
+    follow(0, now.R * tie.other_offset, true);
+    for (int i = 0; tie.directors && i < 3; ++i) follow(1 + i, tie.length * now.R.col(i), false);
+  }
+  for (const SolidRow& row : model.solid_rows) {
+    if (row.body < 0) continue;
+    const rigid::Motion& now = iterate.bodies[row.body];
+    const Vec3 r = now.R * row.arm, gap = solid_point(model, iterate, row.solid, row.where) - (now.p + r);
+    problem.c.segment<3>(row.row) = gap;
+    add_body_rows(model.bodies[row.body], row.row, r, -1.0, true, iterate.lambda.segment<3>(row.row), reduced);
+    reduced.violation = std::max(reduced.violation, gap.norm());
+  }
+}
+
 /// Inertia, weight and contacts of rigid bodies.
 void add_bodies(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced) {
   const Model& model = context.model;
@@ -181,6 +232,7 @@ void linearize(const StepContext& context, const State& iterate, const std::vect
   for (std::size_t i = 0; i < model.actuators.size(); ++i) add_actuator(context, iterate, i, reduced);
   add_bodies(context, iterate, touches, reduced);
   add_followed(context, iterate, reduced);
+  add_carried(context, iterate, reduced);
   if (model.unknowns > 0)
     reduced.largest = std::max(reduced.largest, (problem.r.array() / model.arms.array()).abs().maxCoeff());
 }

@@ -38,6 +38,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     if (!lands) command = between(command_of(model, state), command, part / whole);
     report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
                          : step(model, workspace, command, lands ? whole : part, state, evaluation);
+    report.halvings = halvings;
     if (!accepted(report.status)) continue;
     state.time = time;
     if (lands) ++state.grid;

@@ -246,14 +246,15 @@ struct Slide {
   std::optional<double> reach;  ///< [m] how far outside the mesh a point may lie; 10 % of the body's diagonal
 };
 
-/// A material point of a rod held, along some axes and about some, by the ground, a frame, a solid or another rod:
-/// where it is at the start of the run, relative to what holds it. The axes are those of the holder: the world's
-/// (ground, solid, carried along with it), the frame's, or the other rod's cross-section.
+/// A material point of a rod held, along some axes and about some, by the ground, a frame, a solid, a rigid body or
+/// another rod: where it is at the start of the run, relative to what holds it. The axes are those of the holder: the
+/// world's (ground, solid, carried along with it), the frame's or the body's, or the other rod's cross-section.
 struct Tie {
   std::string rod;
   std::optional<double> at;          ///< [m] abscissa; none: the tip
-  std::optional<std::string> frame;  ///< at most one of frame, solid and other; none: the ground
+  std::optional<std::string> frame;  ///< at most one of frame, solid, body and other; none: the ground
   std::optional<std::string> solid;
+  std::optional<std::string> body;                    ///< a rigid one
   std::optional<std::string> other;                   ///< another rod
   std::optional<double> other_at;                     ///< [m] abscissa on it; none: its tip
   std::array<bool, 3> along = {true, true, true};     ///< directions held
@@ -261,7 +262,13 @@ struct Tie {
   std::optional<double> reach;                        ///< as for Slide, with `solid`
 };
 
-using Coupling = std::variant<Slide, Tie>;
+/// Nodes of a solid that a rigid body carries: a plate, an end disc.
+struct Glue {
+  std::string solid, body;
+  Region region;
+};
+
+using Coupling = std::variant<Slide, Tie, Glue>;
 
 /// A massless tendon inside a rod, from the abscissa `from` to `to`, where it ends: at a distance from the centreline
 /// and at an angle from the cross-section's y axis towards z. Both may change linearly along it: parallel, convergent

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sinew/sim/clock.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/step_ends.hpp"
@@ -57,13 +58,18 @@ StepReport step(const Model& model, Workspace& workspace, const Command& command
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.room);
-  find_contacts(memory.context, iterate.state, memory.here.contacts());
+  double spent = 0.0;
+  {
+    const Clock clock(spent);
+    find_contacts(memory.context, iterate.state, memory.here.contacts());
+  }
   const Newton& wanted = model.scene.newton;
   const bool fixed = wanted.iterations > 0;
   NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
   rules.evaluation = evaluation;
   // What is prescribed stands in the context already.
-  const StepReport report = newton([](double, StepContext&) {}, memory, rules, iterate);
+  StepReport report = newton([](double, StepContext&) {}, memory, rules, iterate);
+  report.times.contact += spent;
   if (accepted(report.status)) std::swap(state, iterate.state);
   return report;
 }

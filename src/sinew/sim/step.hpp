@@ -7,6 +7,7 @@
 
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/status.hpp"
+#include "sinew/solve/coulomb.hpp"
 
 namespace sinew {
 
@@ -28,7 +29,7 @@ Command between(Command from, const Command& to, double part);
 
 /// Seconds spent, summed over the iterations of a step and over what runs side by side: each volume, and the rods.
 struct StageTimes {
-  double forces = 0.0, assembly = 0.0, factor = 0.0, compliance = 0.0, rods = 0.0, solve = 0.0;
+  double forces = 0.0, assembly = 0.0, factor = 0.0, compliance = 0.0, rods = 0.0, solve = 0.0, contact = 0.0;
   double step = 0.0;  ///< from its beginning to its end, halved attempts included: all stages and what is between them
 
   StageTimes& operator+=(const StageTimes& other);
@@ -44,9 +45,10 @@ inline constexpr Stage kStages[] = {
     {"forces", &StageTimes::forces, "elastic and viscous forces of volumes"},
     {"assembly", &StageTimes::assembly, "tangents of their elements"},
     {"factor", &StageTimes::factor, "their factorisation, rows of couplings included"},
-    {"compliance", &StageTimes::compliance, "W of volumes (11)"},
+    {"compliance", &StageTimes::compliance, "how they give way where they are coupled, W"},
     {"rods", &StageTimes::rods, "forces, tangents and rows of rods"},
-    {"solve", &StageTimes::solve, "rods condensed, the border solved (12), volumes corrected"},
+    {"solve", &StageTimes::solve, "rods and couplings solved together, volumes corrected"},
+    {"contact", &StageTimes::contact, "what is near what, and the forces where it touches"},
     {"step", &StageTimes::step, "the whole step"},
 };
 
@@ -55,15 +57,26 @@ inline StageTimes& StageTimes::operator+=(const StageTimes& other) {
   return *this;
 }
 
+/// What came of contacts and of friction in channels, at the last iterate that was looked at.
+struct ContactReport {
+  int contacts = 0;             ///< near enough to matter, and points that rub
+  double penetration = 0.0;     ///< [m] of the deepest
+  int sweeps = 0, newton = 0;   ///< of solve/coulomb in the whole step
+  int unsolved = 0;             ///< of its problems in the step, those not solved to its tolerance
+  solve::CoulombResidual left;  ///< of the last one
+};
+
 struct StepReport {
   Status status = Status::rest;
   int newton = 0;          ///< linearisations made
+  int halvings = 0;        ///< of the scene's step until it could be made
   double residual = 0.0;   ///< largest unbalanced force over the largest force that acts anywhere
   double violation = 0.0;  ///< [m] largest distance of a sliding point from its rod, or of a tip from its anchor
   bool rotated = false;    ///< a definite tangent stood in for the exact one somewhere
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
   bool redundant = false;  ///< constraint rows depended on each other
   std::string detail;      ///< names what failed, for people
+  ContactReport contact;
   StageTimes times;
 };
 

@@ -1,4 +1,4 @@
-// Ties: material points of rods held, position and axes, by the ground, frames, solids or other rods.
+// Ties: material points of rods held, position and axes, by the ground, frames, solids, rigid bodies or other rods.
 //
 // With y the point held and d_a its axes, `length` long (of a body unknowns that rows hold to it, else given), X the
 // rod's point, and e_b the holder's axes as the rod's cross-section carries them:

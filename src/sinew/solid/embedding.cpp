@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <stdexcept>
 
 namespace sinew::solid {
 
@@ -140,6 +141,20 @@ double squared_distance_to_box(const Eigen::Matrix3Xd& nodes, const Cell& cell, 
 }
 
 }  // namespace
+
+EmbeddedPoint at_node(const Eigen::Matrix3Xd& nodes, const std::vector<Cell>& cells, int node) {
+  EmbeddedPoint point;
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    const std::span<const int> own = cells[e].nodes();
+    const auto found = std::find(own.begin(), own.end(), node);
+    if (found == own.end()) continue;
+    point.element = static_cast<int>(e);
+    point.local = local_coordinates(cells[e].kind, cell_nodes(nodes, cells[e]), nodes.col(node)).value_or(Vec3::Zero());
+    point.weights = NodeValues::Unit(static_cast<Eigen::Index>(own.size()), found - own.begin());
+    return point;
+  }
+  throw std::invalid_argument("at_node: no element has it");
+}
 
 EmbeddedPoint embed(const Eigen::Matrix3Xd& nodes, const std::vector<Cell>& cells, const Vec3& x) {
   EmbeddedPoint best;

@@ -15,6 +15,9 @@ struct EmbeddedPoint {
   double distance = 0.0;      ///< [m] from the element; 0 inside the mesh
 };
 
+/// A node, as a point of the first element that has it.
+EmbeddedPoint at_node(const Eigen::Matrix3Xd& nodes, const std::vector<Cell>& cells, int node);
+
 /// The element that holds x, or the nearest one by distance: of those at equal distance the one that extrapolates
 /// least. Outside, its field is continued linearly from about the nearest point of its faces. The distance is that from
 /// its faces as triangles of their nodes: exact where they are flat, else good to their bulge.

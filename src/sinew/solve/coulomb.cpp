@@ -273,18 +273,21 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     }
     return report.residual.largest() <= tolerance;
   };
-  constexpr int kTurns = 8;
+  // How far forces may yield in a turn of Newton, measured: stiff solids, whose own compliance is small beside that of
+  // their motion as a whole, want little, piles of rigid bodies, whose forces are not decided, more.
+  constexpr double kYields[] = {1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-2, 1e-5};
   int sweeps = 4;
-  yield_ = 1e-3;
   report.solved = report.residual.largest() <= tolerance;
-  for (int turn = 0; turn < kTurns && !report.solved; ++turn, sweeps *= 2) {
+  for (const double yield : kYields) {
+    if (report.solved) break;
     lambda = best_;
     for (int i = 0; i < sweeps; ++i, ++report.sweeps) sweep(problem, lambda);
     report.solved = keep();
     if (report.solved) break;
+    yield_ = yield;
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
-    yield_ *= 0.1;
+    sweeps *= 2;
   }
   lambda = best_;
   return report;
