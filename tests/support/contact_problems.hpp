@@ -187,6 +187,12 @@ inline int plain_sweeps(const solve::CoulombProblem& problem, double tolerance, 
   return sweeps;
 }
 
+/// What is at rest from the start on is known after a few steps.
+inline Scene brief(Scene scene) {
+  scene.time.duration = 0.08;
+  return scene;
+}
+
 /// All of them, small ones first.
 inline std::vector<ContactProblem> contact_problems() {
   std::vector<ContactProblem> all;
@@ -198,11 +204,11 @@ inline std::vector<ContactProblem> contact_problems() {
     take_problems("stiff blocks", blocks(1e7, friction), 6, all);
     take_problems("rods on a drum", logs(4, friction), 10, all);
     take_problems("heap of 12", heap(12, friction), 10, all);
-    take_problems("wall of 20", wall(5, 4, friction), 6, all);
+    take_problems("wall of 20", brief(wall(5, 4, friction)), 6, all);
     take_problems("heap of 20", heap(20, friction), 6, all);
-    take_problems("pile of 27", pile(3, 3, 3, friction), 8, all);
+    take_problems("pile of 27", brief(pile(3, 3, 3, friction)), 8, all);
   }
-  take_problems("pile of 48", pile(4, 4, 3, 0.5), 4, all);
+  take_problems("pile of 48", brief(pile(4, 4, 3, 0.5)), 4, all);
   return all;
 }
 

@@ -98,12 +98,50 @@ TEST(Glue, FreeFlightKeepsMomentumAndNewtonIsQuick) {
   }
 }
 
+/// Whatever the order of couplings: what is glued and what ties follow on a solid are numbered apart.
+TEST(Glue, OrderOfCouplingsDoesNotMatter) {
+  std::vector<Vec3> ends;
+  for (const bool first : {true, false}) {
+    Scene scene = beam_with_plate(0.01);
+    scene.analysis = Analysis::statics;
+    scene.time = {1.0, 1.0};
+    scene.solids[0].second.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitX()}});
+    Rod rod;
+    rod.path = {Vec3(30 * mm, 5 * mm, 10 * mm), Vec3(30 * mm, 5 * mm, 60 * mm)};
+    rod.sections = 4;
+    rod.section = Circle{2 * mm};
+    rod.material = {1e8, 0.4, 1100.0};
+    rod.base = {BaseAxis::x, BaseAxis::y, BaseAxis::z, BaseAxis::turn_x, BaseAxis::turn_y, BaseAxis::turn_z};
+    scene.rods.emplace_back("mast", rod);
+    Tie tie;
+    tie.rod = "mast";
+    tie.at = 0.0;
+    tie.solid = "beam";
+    tie.about = {true, true, true};
+    ContactPair off;
+    off.first = "mast";
+    off.second = "plate";
+    off.off = true;
+    scene.contact.pairs.push_back(off);
+    scene.couplings.insert(first ? scene.couplings.begin() : scene.couplings.end(), tie);
+    const Model model = build(scene, beam);
+    const test::Trace trace = test::run_all(model);
+    ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status) << trace.failure.detail;
+    ends.push_back(trace.states.back().bodies[0].p);
+  }
+  EXPECT_LT(ends[0].z(), 5 * mm - 1 * mm);
+  EXPECT_LT((ends[0] - ends[1]).norm(), 1e-9);
+}
+
 TEST(Glue, NamesWhatItDoesNotFind) {
   Scene scene = beam_with_plate(0.01);
   std::get<Glue>(scene.couplings[0]).body = "disc";
   EXPECT_THROW(build(scene, beam), InputError);
   scene = beam_with_plate(0.01);
   scene.solids[0].second.fixed.push_back({Plane{Vec3(60 * mm, 0, 0), Vec3::UnitX()}});
+  EXPECT_THROW(build(scene, beam), InputError);
+  scene = beam_with_plate(0.01);
+  scene.couplings.push_back(scene.couplings[0]);
   EXPECT_THROW(build(scene, beam), InputError);
 }
 
@@ -153,6 +191,21 @@ TEST(Tie, DiscAtTheTipOfARodIsAForceAndItsLever) {
   const test::Trace expected = test::run_all(plain);
   ASSERT_EQ(expected.end, RunEnd::done) << to_string(expected.failure.status);
   EXPECT_LT((tip - test::tip(plain, expected.states.back())).norm(), 1e-6 * 0.2);
+}
+
+TEST(Tie, DiscAtTheTipOfARodSwingsWithItsMass) {
+  Scene scene = rod_with_disc(1.0, Vec3::Zero());
+  scene.gravity.setZero();
+  scene.analysis = Analysis::modal;
+  scene.modes = 2;
+  scene.bodies[0].second.shape = SphereShape{1 * mm};
+  scene.rods[0].second.material.density = 1.0;
+  const Model model = build(scene, beam);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status) << trace.failure.detail;
+  const double EI = 1e9 * std::numbers::pi / 4.0 * std::pow(2 * mm, 4);
+  const double expected = std::sqrt(3.0 * EI / std::pow(0.2, 3)) / (2.0 * std::numbers::pi);
+  EXPECT_NEAR(trace.states[1].frequency, expected, 5e-3 * expected);  // ten sections of constant curvature
 }
 
 }  // namespace

@@ -153,18 +153,27 @@ void build_coupling(Model& model, int number, const Glue& glue) {
   CouplingFacts facts;
   for (const int node : select(own, glue.region, path).nodes) {
     ++facts.asked;
-    const Eigen::Vector3i unknown = own.body.unknown.col(node);
-    if (unknown.minCoeff() < 0) continue;
-    ++facts.kept;
     SolidRow row;
     row.solid = solid;
     row.where = solid::at_node(own.body.rest, own.body.cells, node);
+    const bool again = std::any_of(model.solid_rows.begin(), model.solid_rows.end(), [&](const SolidRow& earlier) {
+      return earlier.body >= 0 && earlier.solid == solid && earlier.where.element == row.where.element &&
+             earlier.where.weights == row.where.weights;
+    });
+    if (again) {
+      reject(path, "node " + std::to_string(node), "is glued already",
+             "let the regions of one solid's glues not overlap");
+    }
+    if (own.body.unknown.col(node).minCoeff() < 0) continue;
+    ++facts.kept;
     row.body = number_of_body;
     row.arm = start.R.transpose() * (own.body.rest.col(node) - start.p);
     model.solid_rows.push_back(row);
   }
   if (facts.kept < facts.asked) {
-    reject(path, glue.solid, std::to_string(facts.asked - facts.kept) + " of its nodes are held by `fixed` already",
+    reject(path, glue.solid,
+           std::to_string(facts.asked - facts.kept) +
+               " of its nodes are held by `fixed` already, along some axis at least",
            "glue nodes that are free, or leave them out of `fixed`");
   }
   model.couplings.push_back(facts);

@@ -223,7 +223,6 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     }
     if (turn > 0 && changed <= kTolerance * largest) break;
     const solve::CoulombReport found = coulomb_.solve(problem_, kTolerance, lambda_);
-    report_.contacts = contacts();
     report_.sweeps += found.sweeps;
     report_.newton += found.newton;
     report_.unsolved += found.solved ? 0 : 1;

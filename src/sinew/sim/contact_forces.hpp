@@ -37,7 +37,7 @@ class ContactForces {
   /// `prepare`; that of the first is not known, and infinite.
   double error(const StepContext& context, const State& iterate, const ContactRoom& room) const;
 
-  /// Of the problems since they were last `forgotten`.
+  /// Of the problems since they were last forgotten, without their contacts.
   const ContactReport& report() const { return report_; }
   void forget() { report_ = {}; }
   const solve::CoulombProblem& problem() const { return problem_; }

@@ -177,7 +177,7 @@ double FreeMotion::compliance_of(int one, int other) const {
   return Z_.size() == 0 ? compliance_(last, first) : compliance_(place[one], place[other]);
 }
 
-void FreeMotion::push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c) {
+void FreeMotion::push_own(const SolidModel& model, const Model& whole, Eigen::VectorXd& c) {
   y_ = pushed_;
   rows_ = moved_;
   take_push(model, whole, c);

@@ -35,9 +35,9 @@ class FreeMotion {
   double stiffness() const { return factor_->largest_diagonal(); }  ///< [N/m] largest diagonal entry of A
   int negative() const { return factor_->negative(); }  ///< eigenvalues of A: 0 where the volume by itself is stable
 
-  /// Solves the first half for what those forces leave unbalanced, or for a force over the unknowns. H dx, without
-  /// dlambda, is added to the violations c.
-  void push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
+  /// Solves the first half for a force over the unknowns, or takes it for what the forces that `factor` was given leave
+  /// unbalanced. H dx, without dlambda, is added to the violations c.
+  void push_own(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
   void push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c);
   /// Motion [m] of the volume's effectors, three numbers each: that of the push, and what multipliers add.
   void effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, bool pushed,

@@ -67,6 +67,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
 
 ContactReport Linearization::contact_report() const {
   ContactReport report = contact_forces_.report();
+  report.contacts = static_cast<int>(contacts_.playing.size() + context_->model.rubbing.size());
   for (const Touch& touch : contacts_.touches) report.penetration = std::max(report.penetration, -touch.u[0]);
   return report;
 }
@@ -160,12 +161,15 @@ bool Linearization::unstable() const {
 void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer) {
   const Clock clock(times_->solve);
   const Model& model = context_->model;
+  const bool own = &right == this;
   pushes_.resize(right.forces_.size());
-  for (std::size_t i = 0; i < pushes_.size(); ++i) pushes_[i] = -right.forces_[i].r;
+  for (std::size_t i = 0; i < pushes_.size(); ++i) {
+    if (!own || model.scene.newton.precision == linalg::Precision::float32) pushes_[i] = -right.forces_[i].r;
+  }
   solve::right_side(right.reduced_.problem, side_);
   for (std::size_t i = 0; i < free_.size(); ++i) {
-    if (&right == this) {
-      free_[i].push(model.solids[i], model, side_.c);
+    if (own) {
+      free_[i].push_own(model.solids[i], model, side_.c);
     } else {
       free_[i].push(model.solids[i], model, pushes_[i], side_.c);
     }

@@ -33,6 +33,12 @@ Eigen::MatrixXd mass_matrix(const Model& model, const State& state) {
     M.block(at, at, n, n) = own.bottomRightCorner(n, n);
     at += n;
   }
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyModel& own = model.bodies[i];
+    const Eigen::Matrix3d& R = state.bodies[i].R;
+    M.block<3, 3>(own.unknown, own.unknown).diagonal().setConstant(own.body.mass);
+    M.block<3, 3>(own.unknown + 3, own.unknown + 3) = R * own.body.inertia * R.transpose();
+  }
   return M;
 }
 
@@ -160,6 +166,8 @@ double largest_motion(const Model& model, const StepContext& context, const Stat
     const auto a = rod_shape(model, state, static_cast<int>(i)), b = rod_shape(model, moved, static_cast<int>(i));
     for (std::size_t k = 0; k < a.p.size(); ++k) largest = std::max(largest, (b.p[k] - a.p[k]).norm() / e);
   }
+  for (const BodyModel& body : model.bodies)
+    largest = std::max(largest, shape.reduced.dz.segment<3>(body.unknown).norm());
   return largest;
 }
 

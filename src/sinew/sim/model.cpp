@@ -49,7 +49,10 @@ void number_cable_points(Model& model, int number) {
 void number_ties(Model& model) {
   model.first_followed = model.unknowns;
   std::vector<SolidRow> rows;
-  std::size_t next = 0;  // of the solid rows that ties asked for
+  // Those that ties asked for, in their order, then what is glued.
+  std::stable_partition(model.solid_rows.begin(), model.solid_rows.end(),
+                        [](const SolidRow& row) { return row.body < 0; });
+  std::size_t next = 0;
   for (TieModel& tie : model.ties) {
     tie.row = model.rows;
     model.rows += static_cast<int>(tie.along.size() + tie.about.size());
@@ -67,7 +70,7 @@ void number_ties(Model& model) {
     }
   }
   model.followed = model.unknowns - model.first_followed;
-  for (; next < model.solid_rows.size(); ++next, model.rows += 3) {  // what is glued
+  for (; next < model.solid_rows.size(); ++next, model.rows += 3) {
     rows.push_back(model.solid_rows[next]);
     rows.back().row = model.rows;
   }

@@ -26,7 +26,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const bool on_grid = state.time == from;
   const double whole = on_grid ? h : to - state.time;
   Command& command = workspace.memory().command;
-  StepReport report;
+  StepReport report, earlier;
   // Half steps are fractions of the grid's, whatever is left of it after earlier ones.
   for (int halvings = 0; halvings <= kHalvings; ++halvings) {
     const double part = std::ldexp(h, -halvings);
@@ -39,6 +39,11 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
                          : step(model, workspace, command, lands ? whole : part, state, evaluation);
     report.halvings = halvings;
+    // What earlier attempts cost is part of what the step did.
+    report.times += earlier.times;
+    report.contact.sweeps += earlier.contact.sweeps;
+    report.contact.newton += earlier.contact.newton;
+    earlier = report;
     if (!accepted(report.status)) continue;
     state.time = time;
     if (lands) ++state.grid;

@@ -91,9 +91,8 @@ linalg::SparseFactor::Rows border_rows(const solid::Body& body,
     for (std::size_t c = 0; c < nodes.size(); ++c) {
       for (int axis = 0; axis < 3; ++axis) {
         const int unknown = body.unknown(axis, nodes[c]);
-        if (unknown >= 0)
-          entries.emplace_back(static_cast<int>(3 * k) + axis, unknown,
-                               points[k]->weights[static_cast<Eigen::Index>(c)]);
+        const double weight = points[k]->weights[static_cast<Eigen::Index>(c)];
+        if (unknown >= 0 && weight != 0.0) entries.emplace_back(static_cast<int>(3 * k) + axis, unknown, weight);
       }
     }
   }

@@ -292,7 +292,7 @@ Symmetric inverse(const Symmetric& A) {
 
 // With T = F R^T and w the turning of R for motions u_a of the nodes, (tr T - T) w = sum_a (R g_a) x u_a, the second
 // variation of the energy is 2 mu |dF|^2 + lambda (R . dF)^2 + (lambda tr(R^T F - 1) - 2 mu) w . (tr T - T) w.
-// (A rotation that was found in so few iterations has no stretches so far apart that tr T - T would be singular.)
+// (Where a rotation was found T is positive definite, and so is tr T - T, whose eigenvalues are sums of two of T's.)
 void exact(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate, TetStiffness& stiffness) {
   each_part(batch, [&](const Part& part) {
     const Matrix F = part(frames.F), R = part(frames.R);
