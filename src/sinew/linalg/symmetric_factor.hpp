@@ -27,7 +27,7 @@ class SymmetricFactor {
   bool factor(std::span<const int> begin, std::span<const double> least);
   /// b <- A^-1 b. Takes room for whole lanes of the size and one more (kernels.hpp).
   void solve(double* b) const;
-  std::size_t room() const { return static_cast<std::size_t>(stride_ + kLanes); }
+  std::size_t room() const { return static_cast<std::size_t>(stride_) + kLanes; }
   double pivot(int j) const { return pivots_[static_cast<std::size_t>(j)]; }
   /// How many eigenvalues are negative (Sylvester).
   int negative() const;
