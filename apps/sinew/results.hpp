@@ -20,12 +20,12 @@ struct RunSummary {
   int rotated = 0;                    ///< of those, steps in which the rotated tangent stood in for the exact one
   int most_inverted = 0;              ///< of those, most elements flat or inside out in one
   int threads = 1;
-  int halved = 0;     ///< of those, parts of steps that were too long
-  int redundant = 0;  ///< of those, steps whose rows repeated each other
-  ContactReport
-      contact;  ///< of those: most contacts, deepest penetration, all sweeps and steps of Newton, largest residual
+  int halved = 0;         ///< of those, parts of steps that were too long
+  int redundant = 0;      ///< of those, steps whose rows repeated each other
+  ContactReport contact;  ///< of those, as `add` puts them together
 };
 
+/// Sums of what was done, the largest of all else.
 void add(const ContactReport& step, ContactReport& all);
 
 std::filesystem::path recording_path(const std::filesystem::path& folder);

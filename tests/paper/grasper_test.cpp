@@ -2,8 +2,6 @@
 // mm; one of 20 mm would pass between the two fingers side by side, of which one does not reach it.
 #include <gtest/gtest.h>
 
-#include "sinew/io/mesh_file.hpp"
-#include "sinew/io/scene_file.hpp"
 #include "support/grasps.hpp"
 
 namespace sinew {
@@ -15,8 +13,7 @@ using test::mm;
 Grasp grasp(std::vector<std::string> changes) {
   for (const char* finger : {"one", "two", "three"})
     changes.push_back("solids." + std::string(finger) + ".mesh=" + SINEW_SHARED_MESHES + "/finger.vtk");
-  const std::filesystem::path file = std::filesystem::path(SINEW_SOURCE_DIR) / "tests/paper/grasper.yaml";
-  return test::grasp(build(io::read_scene(file, changes).scene, io::read_mesh));
+  return test::grasp("tests/paper/grasper.yaml", changes);
 }
 
 /// The hand comes down by 45 mm, so that fingertips end 14 to 16 mm above the floor, beside the cube.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "sinew/io/mesh_file.hpp"
+#include "sinew/io/scene_file.hpp"
 #include "support/scenes.hpp"
 
 namespace sinew::test {
@@ -46,6 +48,11 @@ inline Grasp grasp(const Model& model) {
       &failure);
   EXPECT_EQ(end, RunEnd::done) << to_string(failure.status) << " " << failure.detail;
   return found;
+}
+
+/// Of a scene file below the project's folder.
+inline Grasp grasp(const std::string& file, const std::vector<std::string>& changes) {
+  return grasp(build(io::read_scene(std::filesystem::path(SINEW_SOURCE_DIR) / file, changes).scene, io::read_mesh));
 }
 
 }  // namespace sinew::test

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "sinew/io/mesh_file.hpp"
-#include "sinew/io/scene_file.hpp"
 #include "support/grasps.hpp"
 
 namespace sinew {
@@ -14,10 +12,7 @@ using test::mm;
 
 using test::Grasp;
 
-Grasp grasp(const std::vector<std::string>& changes) {
-  const std::filesystem::path file = std::filesystem::path(SINEW_SOURCE_DIR) / "examples/grasper.yaml";
-  return test::grasp(build(io::read_scene(file, changes).scene, io::read_mesh));
-}
+Grasp grasp(const std::vector<std::string>& changes) { return test::grasp("examples/grasper.yaml", changes); }
 
 TEST(Grasper, LiftsTheCubeAndHoldsIt) {
   const Grasp found = grasp({});

@@ -16,7 +16,8 @@ std::vector<int> chosen(const std::array<bool, 3>& axes) {
 }
 
 /// A tie of the rod's point at s to axes that stand in the world as `holder` at t = 0.
-TieModel& add_tie(Model& model, int coupling, int rod, double s, const rod::Mat3& axes) {
+TieModel& add_tie(Model& model, int coupling, int rod, double s, const rod::Mat3& axes, const std::vector<int>& along,
+                  const std::vector<int>& about) {
   TieModel& tie = model.ties.emplace_back();
   tie.rod = rod;
   tie.coupling = coupling;
@@ -25,6 +26,8 @@ TieModel& add_tie(Model& model, int coupling, int rod, double s, const rod::Mat3
   tie.holder = {axes, point.position};
   tie.own_axes = point.R.transpose() * axes;
   tie.length = model.rods[rod].rod.length();
+  tie.along = along;
+  tie.about = about;
   return tie;
 }
 
@@ -58,11 +61,9 @@ bool needs_directors(const TieModel& tie) {
 
 void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Vec3& point,
               const solid::EmbeddedPoint& where, const std::vector<int>& along, const std::vector<int>& about) {
-  TieModel& tie = add_tie(model, coupling, rod, s, rod::Mat3::Identity());
+  TieModel& tie = add_tie(model, coupling, rod, s, rod::Mat3::Identity(), along, about);
   tie.solid = solid;
   tie.holder.p = point;
-  tie.along = along;
-  tie.about = about;
   tie.directors = needs_directors(tie);
   SolidRow row;
   row.solid = solid;
@@ -116,31 +117,25 @@ void build_coupling(Model& model, int number, const Tie& tie) {
     if (other == rod) reject(path + ".other", *tie.other, "is the rod itself", "name another rod");
     const double other_s = abscissa_on(model, other, tie.other_at, path + ".other_at");
     const rod::CurvePoint holder = rod::curve_point(start_shape(model.rods[other]), other_s);
-    TieModel& own = add_tie(model, number, rod, s, holder.R);
+    TieModel& own = add_tie(model, number, rod, s, holder.R, along, about);
     own.other = other;
     own.other_s = other_s;
     own.other_offset = holder.R.transpose() * (position - holder.position);
-    own.along = along;
-    own.about = about;
     own.directors = needs_directors(own);
     return;
   }
   if (tie.body) {
     const int body = find(model.scene.bodies, *tie.body, path + ".body", "body");
     const rigid::Motion& start = model.bodies[body].start;
-    TieModel& own = add_tie(model, number, rod, s, start.R);
+    TieModel& own = add_tie(model, number, rod, s, start.R, along, about);
     own.rigid = body;
     own.other_offset = start.R.transpose() * (position - start.p);
-    own.along = along;
-    own.about = about;
     own.directors = needs_directors(own);
     return;
   }
   const rod::Mat3 axes = frame < 0 ? rod::Mat3::Identity() : frame_at(model.scene.frames[frame].second, 0.0).R;
-  TieModel& own = add_tie(model, number, rod, s, axes);
+  TieModel& own = add_tie(model, number, rod, s, axes, along, about);
   own.frame = frame;
-  own.along = along;
-  own.about = about;
   warn_of_idle_rows(model, own, path);
 }
 

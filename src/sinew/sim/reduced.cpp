@@ -142,14 +142,9 @@ void add_carried(const StepContext& context, const State& iterate, Reduced& redu
     const BodyModel& body = model.bodies[tie.rigid];
     const rigid::Motion& now = iterate.bodies[tie.rigid];
     const auto follow = [&](int k, const Vec3& r, bool displaced) {
-      const int row = tie.body_row + 3 * k, unknown = tie.unknown + 3 * k;
-      const Vec3 lambda = iterate.lambda.segment<3>(row);
-      const Vec3 gap = (displaced ? Vec3(now.p + r) : r) - iterate.followed.segment<3>(unknown - model.first_followed);
-      problem.c.segment<3>(row) = gap;
-      for (int i = 0; i < 3; ++i) problem.G.add(row + i, unknown + i, 1.0);
-      problem.r.segment<3>(unknown) += lambda;
-      add_body_rows(body, row, r, 1.0, displaced, lambda, reduced);
-      reduced.violation = std::max(reduced.violation, gap.norm());
+      const int row = tie.body_row + 3 * k;
+      hold_followed(model, iterate, row, tie.unknown + 3 * k, displaced ? Vec3(now.p + r) : r, reduced);
+      add_body_rows(body, row, r, 1.0, displaced, iterate.lambda.segment<3>(row), reduced);
     };
     follow(0, now.R * tie.other_offset, true);
     for (int i = 0; tie.directors && i < 3; ++i) follow(1 + i, tie.length * now.R.col(i), false);
@@ -194,19 +189,23 @@ void add_bodies(const StepContext& context, const State& iterate, const std::vec
 
 /// Unknowns that a tie follows on a solid: c = sum w x - z.
 void add_followed(const StepContext& context, const State& iterate, Reduced& reduced) {
-  solve::CoupledProblem& problem = reduced.problem;
   for (const SolidRow& row : context.model.solid_rows) {
     if (row.unknown < 0) continue;
-    const Vec3 gap = solid_point(context.model, iterate, row.solid, row.where) -
-                     iterate.followed.segment<3>(row.unknown - context.model.first_followed);
-    problem.c.segment<3>(row.row) = gap;
-    for (int i = 0; i < 3; ++i) problem.G.add(row.row + i, row.unknown + i, 1.0);
-    problem.r.segment<3>(row.unknown) += iterate.lambda.segment<3>(row.row);
-    reduced.violation = std::max(reduced.violation, gap.norm());
+    hold_followed(context.model, iterate, row.row, row.unknown,
+                  solid_point(context.model, iterate, row.solid, row.where), reduced);
   }
 }
 
 }  // namespace
+
+void hold_followed(const Model& model, const State& iterate, int row, int unknown, const Vec3& is, Reduced& reduced) {
+  solve::CoupledProblem& problem = reduced.problem;
+  const Vec3 gap = is - iterate.followed.segment<3>(unknown - model.first_followed);
+  problem.c.segment<3>(row) = gap;
+  for (int i = 0; i < 3; ++i) problem.G.add(row + i, unknown + i, 1.0);
+  problem.r.segment<3>(unknown) += iterate.lambda.segment<3>(row);
+  reduced.violation = std::max(reduced.violation, gap.norm());
+}
 
 void linearize(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced) {
   const Model& model = context.model;

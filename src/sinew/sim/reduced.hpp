@@ -36,6 +36,9 @@ struct Reduced {
 /// Memory of an earlier one is used again.
 void linearize(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced);
 
+/// Three rows, from `row`, that hold what a tie follows, three unknowns z from `unknown`, to where it is: c = is - z.
+void hold_followed(const Model& model, const State& iterate, int row, int unknown, const Vec3& is, Reduced& reduced);
+
 /// Zeros for every reduced unknown, row and strain, in the memory of an earlier one.
 void clear(const Model& model, solve::RightSide& side);
 

@@ -92,28 +92,23 @@ void add_held(RodRows& rod, const TieModel& tie) {
 
 /// The rows that hold what a tie follows to the rod that holds.
 void add_holding(RodRows& rod, const TieModel& tie) {
-  solve::CoupledProblem& problem = rod.problem();
-  const Holder held = holder(rod.context(), rod.iterate(), tie);
   const rod::CurvePoint point = rod::curve_point(rod.shape(), tie.other_s);
-  const auto follow = [&](int k, const Vec3& is, const Vec3& followed, const Vec3& offset, bool vector) {
-    const int row = tie.body_row + 3 * k, unknown = tie.unknown + 3 * k;
-    const Vec3 lambda = rod.iterate().lambda.segment<3>(row), gap = is - followed;
-    problem.c.segment<3>(row) = gap;
-    for (int i = 0; i < 3; ++i) problem.G.add(row + i, unknown + i, 1.0);
-    problem.r.segment<3>(unknown) += lambda;
+  const auto follow = [&](int k, const Vec3& is, const Vec3& offset, bool vector) {
+    const int row = tie.body_row + 3 * k;
+    const Vec3 lambda = rod.iterate().lambda.segment<3>(row);
+    hold_followed(rod.context().model, rod.iterate(), row, tie.unknown + 3 * k, is, rod.reduced());
     rod.load({tie.other_s, offset, -lambda});
     if (vector) rod.load({tie.other_s, Vec3::Zero(), lambda});
     for (int i = 0; i < 3; ++i) {
       rod.attach(rod.row(row + i), point, offset, -Vec3::Unit(i));
       if (vector) rod.attach(rod.row(row + i), point, Vec3::Zero(), Vec3::Unit(i));
     }
-    rod.reduced().violation = std::max(rod.reduced().violation, gap.norm());
   };
-  follow(0, point.position + point.R * tie.other_offset, held.y, tie.other_offset, false);
+  follow(0, point.position + point.R * tie.other_offset, tie.other_offset, false);
   if (!tie.directors) return;
   for (int i = 0; i < 3; ++i) {
     const Vec3 offset = tie.length * tie.other_axes.col(i);
-    follow(1 + i, point.R * offset, held.d.col(i), offset, true);
+    follow(1 + i, point.R * offset, offset, true);
   }
 }
 
