@@ -160,6 +160,20 @@ def write_msh(path, nodes, cells, groups):
         file.write("$EndElements\n")
 
 
+def write_ring(path, ring, tube, around, across):
+    """A ring about z as binary STL: middle of the tube on a circle of radius `ring`."""
+    a, b = 2 * np.pi * np.arange(around) / around, 2 * np.pi * np.arange(across) / across
+    r = ring + tube * np.cos(b)
+    points = np.stack([np.outer(np.cos(a), r), np.outer(np.sin(a), r), np.outer(np.ones(around), tube * np.sin(b))], axis=-1)
+    next_a, next_b = np.roll(points, -1, axis=0), np.roll(points, -1, axis=1)
+    both = np.roll(next_a, -1, axis=1)
+    facets = np.stack([np.stack([points, next_a, both], axis=2), np.stack([points, both, next_b], axis=2)], axis=2)
+    facets = facets.reshape(-1, 3, 3).astype("<f4")
+    record = np.zeros(len(facets), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    record["corners"] = facets
+    path.write_bytes(b"Sinew ring, mm".ljust(80) + np.uint32(len(facets)).tobytes() + record.tobytes())
+
+
 def report(name, nodes, cells):
     corners = nodes[cells]
     a, b, c = (corners[:, k] - corners[:, 0] for k in (1, 2, 3))
@@ -192,6 +206,7 @@ def main():
     nodes, cells, groups = chambers()
     write_msh(folder / "chambers.msh", nodes, cells, groups)
     report("chambers", nodes, cells)
+    write_ring(folder / "ring.stl", 30, 5, 32, 12)
 
 
 if __name__ == "__main__":

@@ -140,13 +140,40 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
   int unknowns = model.unknowns;
   for (const RodModel& rod : model.rods) unknowns += rod.rod.strain_coordinates();
   fmt::print(
-      "The scene is sound: {} unknowns of rods and points, {} constraint rows. Run it with: sinew run {} -o out\n",
+      "The scene is sound: {} unknowns of rods, points and bodies, {} constraint rows. Run it with: sinew run {} -o "
+      "out\n",
       unknowns, model.rows, scene.string());
   return kDone;
 }
 
+namespace {
+
+int describe_surface(const std::filesystem::path& path, const solid::Mesh& mesh) {
+  const contact::Mesh surface = contact::make_mesh(mesh.nodes, mesh.faces);
+  const Vec3 lower = mesh.nodes.rowwise().minCoeff(), upper = mesh.nodes.rowwise().maxCoeff();
+  fmt::print("{}: a surface of {} triangles, {} points\n", path.string(), mesh.faces.size(), surface.used.size());
+  for (const auto& [kind, count] : mesh.ignored) fmt::print("  {} of kind {} are not used\n", count, kind);
+  fmt::print("  from [{:.6g}, {:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}] (units of the file)\n", lower.x(), lower.y(),
+             lower.z(), upper.x(), upper.y(), upper.z());
+  if (const int open = contact::open_edges(mesh.faces); open > 0) {
+    fmt::print(
+        "  {} edges where not exactly two triangles meet, turned the same way: bodies take it with `hull: true` "
+        "alone\n",
+        open);
+  } else {
+    const double volume = contact::bulk(surface).volume;
+    fmt::print("  closed, volume {:.6g}{}\n", volume, volume < 0.0 ? ": it is inside out" : "");
+  }
+  if ((upper - lower).norm() > 10.0)
+    fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
+  return kDone;
+}
+
+}  // namespace
+
 int describe_mesh(const std::filesystem::path& path) {
   const solid::Mesh mesh = io::read_mesh(path);
+  if (mesh.cells.empty()) return describe_surface(path, mesh);
   const solid::MeshSummary s = solid::summarize(mesh);
   fmt::print("{}: {} nodes, {}\n", path.string(), s.nodes, list_cells(s.kinds));
   for (const auto& [kind, count] : s.ignored) fmt::print("  {} cells of kind {} are not used\n", count, kind);

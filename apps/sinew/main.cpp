@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
   check->add_option("--set", check_overrides, "Change the scene: path=value")->type_name("PATH=VALUE");
 
   std::filesystem::path mesh;
-  CLI::App* info = program.add_subcommand("info", "Sizes and quality of a mesh (legacy VTK, VTU, Gmsh MSH)");
+  CLI::App* info =
+      program.add_subcommand("info", "Sizes and quality of a mesh (legacy VTK, VTU, Gmsh MSH; surfaces: STL, OBJ)");
   info->add_option("mesh", mesh, "Mesh file")->required();
 
   std::filesystem::path recorded;

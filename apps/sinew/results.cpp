@@ -200,10 +200,13 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
     options.title = model.scene.title.empty() ? std::filesystem::path(recording.header.scene_name).stem().string()
                                               : model.scene.title;
     options.up = -model.scene.gravity;
-    io::draw_picture(folder / "picture.png",
-                     snapshot(model, unpack(model, recording.steps.front().state), recording.steps.front().status),
-                     snapshot(model, unpack(model, recording.steps.back().state), recording.steps.back().status),
-                     options);
+    const io::RecordedStep &first = recording.steps.front(), &last = recording.steps.back();
+    const std::string status = summary.end == "done" ? last.status
+                               : summary.end == "numerical_stop"
+                                   ? "stopped: " + std::string(to_string(summary.failure.status))
+                                   : summary.end;
+    io::draw_picture(folder / "picture.png", snapshot(model, unpack(model, first.state), first.status),
+                     snapshot(model, unpack(model, last.state), status), options);
   }
   return {"picture.png        the end state", "signals.csv        outputs and motors over time",
           "paraview/run.pvd   the motion, for ParaView", "report.json        sizes, status of every step, times",

@@ -21,7 +21,12 @@ namespace {
 
 std::atomic<bool> interrupted = false;
 
-void on_signal(int) { interrupted = true; }
+/// The first time the step is finished and all is written; the second time the program ends at once, and what was
+/// recorded is there.
+void on_signal(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
 
 std::string end_word(RunEnd end) {
   switch (end) {

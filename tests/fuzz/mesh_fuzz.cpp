@@ -2,13 +2,14 @@
 //
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -Isrc -I/usr/include/eigen3
 //     tests/fuzz/mesh_fuzz.cpp src/sinew/io/{byte_cursor,mesh_*,vtk_*,vtu_*}.cpp src/sinew/solid/{element,mesh*}.cpp
-//     src/sinew/error/*.cpp -lfmt -lpugixml -lz -o mesh_fuzz
+//     src/sinew/contact/{mesh,tree}.cpp src/sinew/error/*.cpp -lfmt -lpugixml -lz -o mesh_fuzz
 //   ./mesh_fuzz -rss_limit_mb=512 corpus/        (start the corpus from small files of every format)
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
+#include "sinew/contact/mesh.hpp"
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/solid/mesh_summary.hpp"
@@ -26,6 +27,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     const sinew::solid::Mesh mesh = sinew::io::parse_mesh(bytes, "fuzz");
     // A mesh that was accepted is usable: these index it without any check of their own.
+    if (mesh.cells.empty()) {
+      expect(!mesh.faces.empty());
+      const sinew::contact::Mesh surface = sinew::contact::make_mesh(mesh.nodes, mesh.faces);
+      expect(!surface.ridges.empty() &&
+             sinew::contact::open_edges(mesh.faces) <= static_cast<int>(surface.ridges.size()));
+      return 0;
+    }
     const sinew::solid::MeshSummary summary = sinew::solid::summarize(mesh);
     expect(summary.smallest > 0.0 && sinew::solid::boundary(mesh.cells).size() <= 6 * mesh.cells.size());
     for (const auto& [name, group] : mesh.groups) {

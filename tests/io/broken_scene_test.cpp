@@ -113,6 +113,8 @@ const std::vector<Broken> cases = {
      "must have one entry per time, 2, not 1", "one entry for each"},
     {", rotate: [[0, 0, 0], [0, 0, 0.5]], translate: [[0, 0, 0], [0, 20 mm, 0]]", "", 10,
      "frames.hand.motion.translate", "", "needs rotate, translate or both", "add one"},
+    {"rotate: [0, 0, 90 deg]", "rotate: [0, 0, 90]", 9, "frames.hand.pose.rotate.2", "90", "must be within one turn",
+     "90 deg"},
     // Names.
     {"slide: {rod: cable", "slide: {rod: cabel", 46, "couplings.0.slide.rod", "cabel", "is not a rod of this scene",
      "did you mean `cable`?"},

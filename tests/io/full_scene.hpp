@@ -176,12 +176,14 @@ bodies:
   ball: {sphere: {radius: 10 mm}, density: 1200, velocity: [0, 0, -1 m/s], spin: [0, 180 deg/s, 0]}
   drum: {cylinder: {radius: 10 mm, length: 50 mm}, mass: 1 kg}
   pill: {capsule: {radius: 5 mm, length: 30 mm}, mass: 1 kg}
+  part: {mesh: {file: part.stl, scale: 0.001, hull: true}, density: 1200}
 obstacles:
   floor: {plane: {point: [0, 0, -1 mm], normal: [0, 0, 2]}}
   step: {box: {size: [1, 1, 1]}, pose: {rotate: [0, 0, 90 deg], translate: [1, 0, 0]}, frame: hand}
   knob: {sphere: {radius: 10 mm}}
   post: {cylinder: {radius: 10 mm, length: 50 mm}}
   rail: {capsule: {radius: 5 mm, length: 30 mm}}
+  terrain: {mesh: {file: terrain.obj, scale: 2, hull: true}}
 contact:
   friction: 0.4
   restitution: 0.1

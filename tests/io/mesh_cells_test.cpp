@@ -279,7 +279,7 @@ TEST(CheckCells, JudgesAFoldByTheSizeOfTheElement) {
     EXPECT_NO_THROW(mesh_of(sample)) << scale;
     for (std::size_t i = 0; i < 8; ++i) sample.coordinates[3 * i + 2] *= 1e-9;  // thin, but not folded
     EXPECT_NO_THROW(
-        check_mesh({Eigen::Map<const Eigen::Matrix3Xd>(sample.coordinates.data(), 3, 20), {kCube}, {}, {}}, "mesh"))
+        check_mesh({Eigen::Map<const Eigen::Matrix3Xd>(sample.coordinates.data(), 3, 20), {kCube}, {}, {}, {}}, "mesh"))
         << scale;
   }
 }

@@ -106,7 +106,7 @@ TEST_F(ReadMesh, RefusesWhatIsNoMeshFile) {
   EXPECT_THAT(message(write({"empty.vtk", ""})), HasSubstr("is empty"));
   EXPECT_THAT(message(write({"blank.vtk", " \n\n"})), HasSubstr("must begin with"));
   EXPECT_THAT(message(write({"garbage.msh", std::string(1000, '\x01')})), HasSubstr("must begin with"));
-  EXPECT_THAT(message(write({"surface.stl", "solid part\n facet normal 0 0 1\n"})), HasSubstr("must begin with"));
+  EXPECT_THAT(message(write({"surface.ply", "ply\nformat ascii 1.0\n"})), HasSubstr("must begin with"));
 }
 
 TEST(ReadShippedMesh, FindsTheFingerAndTheTrunk) {
@@ -314,9 +314,9 @@ TEST(CheckMesh, JudgesAVolumeBySizeOfTheElement) {
     scaled.nodes *= scale;
     EXPECT_NO_THROW(check_mesh(scaled, "mesh"));
     scaled.nodes(2, 3) = 2e-11 * scale;  // volume 3.3e-12, edge cubed 2.8
-    EXPECT_NO_THROW(check_mesh({scaled.nodes, {kTwoTetrahedra[0]}, {}, {}}, "mesh"));
+    EXPECT_NO_THROW(check_mesh({scaled.nodes, {kTwoTetrahedra[0]}, {}, {}, {}}, "mesh"));
     scaled.nodes(2, 3) = 1e-11 * scale;
-    EXPECT_THROW(check_mesh({scaled.nodes, {kTwoTetrahedra[0]}, {}, {}}, "mesh"), InputError);
+    EXPECT_THROW(check_mesh({scaled.nodes, {kTwoTetrahedra[0]}, {}, {}, {}}, "mesh"), InputError);
   }
   mesh.nodes.col(3) = mesh.nodes.col(2);
   EXPECT_THAT(check_fault(mesh).value, HasSubstr("volume 0 of tetrahedron 0"));

@@ -123,7 +123,7 @@ TEST(SceneFile, ReadsRodsAndCouplings) {
 
 TEST(SceneFile, ReadsBodiesAndContact) {
   const Scene scene = parse(bodies_scene).scene;
-  ASSERT_EQ(scene.bodies.size(), 4u);
+  ASSERT_EQ(scene.bodies.size(), 5u);
   const auto& [name, cube] = scene.bodies[0];
   EXPECT_EQ(name, "cube");
   EXPECT_EQ(std::get<BoxShape>(cube.shape).size, Vec3(0.02, 0.03, 0.04));
@@ -138,8 +138,12 @@ TEST(SceneFile, ReadsBodiesAndContact) {
   EXPECT_NEAR(ball.spin.y(), std::numbers::pi, 1e-15);
   EXPECT_EQ(std::get<CylinderShape>(scene.bodies[2].second.shape).length, 0.05);
   EXPECT_EQ(std::get<CapsuleShape>(scene.bodies[3].second.shape).radius, 0.005);
+  const MeshShape& part = std::get<MeshShape>(scene.bodies[4].second.shape);
+  EXPECT_EQ(part.file, "part.stl");
+  EXPECT_EQ(part.scale, 0.001);
+  EXPECT_TRUE(part.hull);
 
-  ASSERT_EQ(scene.obstacles.size(), 5u);
+  ASSERT_EQ(scene.obstacles.size(), 6u);
   const PlaneShape& floor = std::get<PlaneShape>(scene.obstacles[0].second.shape);
   EXPECT_EQ(floor.point, Vec3(0, 0, -0.001));
   EXPECT_EQ(floor.normal, Vec3(0, 0, 2));
@@ -148,6 +152,10 @@ TEST(SceneFile, ReadsBodiesAndContact) {
   EXPECT_EQ(std::get<BoxShape>(step.shape).size, Vec3(1, 1, 1));
   EXPECT_EQ(step.frame, "hand");
   EXPECT_EQ(step.pose.translate, Vec3(1, 0, 0));
+
+  const MeshShape& terrain = std::get<MeshShape>(scene.obstacles[5].second.shape);
+  EXPECT_EQ(terrain.scale, 2.0);
+  EXPECT_TRUE(terrain.hull);
 
   EXPECT_EQ(scene.contact.friction, 0.4);
   EXPECT_EQ(scene.contact.restitution, 0.1);

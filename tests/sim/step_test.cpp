@@ -32,7 +32,7 @@ TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
 
 /// Where this has to change, kStateLayout has to be raised.
 TEST(State, is_packed_in_the_order_that_its_layout_names) {
-  ASSERT_EQ(kStateLayout, 4u);
+  ASSERT_EQ(kStateLayout, 5u);
   double next = 0.0;
   const auto number = [&next] { return next += 1.0; };
   const auto fill = [&](auto& array, int rows, int columns) {
@@ -79,6 +79,8 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   ContactState& contact = state.contacts.emplace_back();
   contact.pair = static_cast<int>(number());
   contact.part = static_cast<std::uint64_t>(number());
+  contact.on_second = true;
+  const auto on_second = static_cast<std::size_t>(number()) - 1;
   for (Vec3* three : {&contact.force, &contact.point, &contact.normal}) {
     for (double& value : *three) value = number();
   }
@@ -86,7 +88,7 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   contact.slip = number();
   std::vector<double> expected(static_cast<std::size_t>(next));
   std::iota(expected.begin(), expected.end(), 1.0);
-  expected[1] = expected[2] = expected[3] = 1.0;  // contacts, on, stable
+  expected[1] = expected[2] = expected[3] = expected[on_second] = 1.0;  // contacts, on, stable
   EXPECT_EQ(pack(state), expected);
 }
 

@@ -4,56 +4,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "sinew/sim/run.hpp"
-#include "sinew/sim/signals.hpp"
-#include "support/scenes.hpp"
+#include "support/contacts.hpp"
 
 namespace sinew {
 namespace {
 
+using test::box_of;
+using test::end_of;
+using test::kGravity;
 using test::mm;
-
-solid::Mesh no_mesh(const std::filesystem::path&) { return {}; }
-
-constexpr double kGravity = 9.81;
-
-RigidBody box_of(double edge, double mass, const Vec3& at) {
-  RigidBody body;
-  body.shape = BoxShape{Vec3::Constant(edge)};
-  body.mass = mass;
-  body.pose.translate = at;
-  return body;
-}
-
-Scene on_floor(double h, double duration, double friction) {
-  Scene scene;
-  scene.time = {h, duration};
-  scene.gravity = Vec3(0, 0, -kGravity);
-  scene.contact.friction = friction;
-  Obstacle floor;
-  floor.shape = PlaneShape{Vec3::Zero(), Vec3::UnitZ()};
-  scene.obstacles.emplace_back("floor", floor);
-  return scene;
-}
-
-/// Runs to the end; the last state.
-State end_of(const Model& model, double* most_energy = nullptr) {
-  State last = initial_state(model);
-  double energy = energy_balance(model, last).total();
-  StepReport failure;
-  const RunEnd end = run(
-      model, last,
-      [&](const State& state, const StepReport&) {
-        const double now = energy_balance(model, state).total();
-        if (most_energy) *most_energy = std::max(*most_energy, now - energy);
-        energy = now;
-        last = state;
-        return true;
-      },
-      &failure);
-  EXPECT_EQ(end, RunEnd::done) << to_string(failure.status) << " " << failure.detail;
-  return last;
-}
+using test::no_mesh;
+using test::on_floor;
 
 TEST(Contact, BlockOnASlopeSticksOrSlidesWithTheRightAcceleration) {
   const double angle = 25.0 * std::numbers::pi / 180.0, limit = std::tan(angle);
@@ -163,6 +124,8 @@ TEST(Contact, WhatStartsInTheGroundIsLiftedGently) {
   const double depth = 5 * mm;
   scene.bodies.emplace_back("box", box_of(50 * mm, 0.1, Vec3(0, 0, 25 * mm - depth)));
   const Model model = build(scene, no_mesh);
+  ASSERT_EQ(model.warnings.size(), 1U);
+  EXPECT_EQ(model.warnings[0].find("contact: floor and box overlap by 5 mm"), 0U) << model.warnings[0];
   double fastest = 0.0, highest = -INFINITY;
   State last;
   run(model, initial_state(model), [&](const State& state, const StepReport&) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace sinew::contact {
@@ -29,7 +30,11 @@ void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& poi
   }
 }
 
-constexpr int kSides = 48;  ///< of the prisms that stand for cylinders
+/// What a meeting is between, and the numbers of the two parts; in all what a double holds exactly.
+enum class Kind : std::uint64_t { point, axis, edges, face_of_first, face_of_second };
+std::uint64_t key(Kind kind, std::size_t i, std::size_t j = 0) {
+  return (static_cast<std::uint64_t>(kind) << 50U) | (static_cast<std::uint64_t>(i) << 25U) | j;
+}
 
 bool round(const Shape& shape) { return std::holds_alternative<Ball>(shape) || std::holds_alternative<Capsule>(shape); }
 
@@ -42,13 +47,13 @@ class Meet {
   void points(const std::vector<Simplex>& of_a, const Pose& at, const Shape& b, const Pose& there, bool swapped) {
     for (std::size_t i = 0; i < of_a.size(); ++i) {
       const Simplex part = nearest_part(b, into(there, at * of_a[i].x[0]));
-      add(of_a[i], at, part, there, 16 * static_cast<std::uint32_t>(i), swapped);
+      add(of_a[i], at, part, there, key(Kind::point, i, swapped ? 1 : 0), swapped);
     }
   }
 
-  void add(const Simplex& a, const Pose& at, const Simplex& b, const Pose& there, std::uint32_t key, bool swapped) {
+  void add(const Simplex& a, const Pose& at, const Simplex& b, const Pose& there, std::uint64_t part, bool swapped) {
     if (nearest(moved(at, a), moved(there, b)).gap >= alarm_) return;
-    found_.push_back({a, b, key, swapped});
+    found_.push_back({a, b, part, swapped});
   }
 
   /// A round shape against any other.
@@ -65,14 +70,14 @@ class Meet {
       edges(axis, at, convex->surface, there, swapped, [](std::size_t) { return true; });
     } else if (const Capsule* other = std::get_if<Capsule>(&b)) {
       const Vec3 tip(0.0, 0.0, 0.5 * other->length);
-      add(axis, at, segment_at(-tip, tip, Vec3::Zero(), other->radius), there, 1, swapped);
+      add(axis, at, segment_at(-tip, tip, Vec3::Zero(), other->radius), there, key(Kind::axis, 0), swapped);
       points({point_at(-tip, other->radius), point_at(tip, other->radius)}, there, a, at, !swapped);
     } else if (const Cylinder* barrel = std::get_if<Cylinder>(&b)) {
       const Vec3 tip(0.0, 0.0, 0.5 * barrel->length);
       const Simplex side = segment_at(-tip, tip, Vec3::Zero(), barrel->radius);
       const Nearest there_is = nearest(moved(at, axis), moved(there, side));
-      if (there_is.b[1] > 0.0 && there_is.b[1] < 1.0) add(axis, at, side, there, 1, swapped);
-      const Polyhedron sides = prism(barrel->radius, barrel->length, kSides);
+      if (there_is.b[1] > 0.0 && there_is.b[1] < 1.0) add(axis, at, side, there, key(Kind::axis, 0), swapped);
+      const Polyhedron sides = prism(*barrel);
       edges(axis, at, sides, there, swapped, [&](std::size_t e) { return sides.sides[e][0] < 2; });  // the rims
     }
   }
@@ -85,24 +90,19 @@ class Meet {
   template <class Wanted>
   void edges(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped,
              const Wanted& wanted) {
-    std::vector<std::pair<std::uint32_t, double>> crossed;
+    std::vector<std::pair<std::size_t, double>> crossed;
     double least = -INFINITY;
     for (std::size_t e = 0; e < own.edges.size(); ++e) {
       if (!wanted(e)) continue;
       const Nearest found = nearest(moved(at, axis), moved(there, edge_of(own, e)));
       if (!(found.a[1] > 0.0 && found.a[1] < 1.0)) continue;  // ends are the business of the points
-      crossed.emplace_back(static_cast<std::uint32_t>(e), found.gap);
+      crossed.emplace_back(e, found.gap);
       least = std::max(least, found.gap);
     }
     for (const auto& [e, gap] : crossed) {
-      if (gap >= std::min(least, 0.0) - alarm_) add(axis, at, edge_of(own, e), there, 1000 + e, swapped);
+      if (gap >= std::min(least, 0.0) - alarm_) add(axis, at, edge_of(own, e), there, key(Kind::axis, 1 + e), swapped);
     }
   }
-  static Simplex edge_of(const Polyhedron& own, std::size_t e) {
-    const Vec3 outward = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
-    return segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], outward, 0.0);
-  }
-
   double alarm_;
   std::vector<Meeting>& found_;
 };
@@ -198,12 +198,7 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
   // Faces where they say about the same: their patch does not flicker.
   const double clearly = 1e-3 * size;
   if (edges.separation > std::max(of_P.separation, of_Q.separation) + clearly) {
-    const auto edge = [](const Polyhedron& own, std::size_t e) {
-      const Vec3 outward = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
-      return segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], outward, 0.0);
-    };
-    found_.push_back({edge(Q, edges.of_Q), edge(P, edges.of_P),
-                      static_cast<std::uint32_t>(100000 + 1000 * edges.of_P + edges.of_Q), true});
+    found_.push_back({edge_of(Q, edges.of_Q), edge_of(P, edges.of_P), key(Kind::edges, edges.of_P, edges.of_Q), true});
     return;
   }
   const bool on_Q = of_Q.separation > of_P.separation + clearly;
@@ -226,15 +221,17 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
   }
   std::erase_if(polygon, [&](const Vec3& p) { return n.dot(p - x) >= alarm_; });
   thin(polygon, n);
-  const auto key = static_cast<std::uint32_t>(200000 + (on_Q ? 1000000 : 0) + 16 * face);
   for (std::size_t i = 0; i < polygon.size(); ++i)
-    found_.push_back({point_at(back * polygon[i], 0.0), plane_at(x, n), key + static_cast<std::uint32_t>(i), !on_Q});
+    found_.push_back({point_at(back * polygon[i], 0.0), plane_at(x, n),
+                      key(on_Q ? Kind::face_of_second : Kind::face_of_first, face, i), !on_Q});
 }
 
 }  // namespace
 
 void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double alarm,
           std::vector<Meeting>& found) {
+  if (std::holds_alternative<Mesh>(first) || std::holds_alternative<Mesh>(second))
+    throw std::invalid_argument("contact::meet: a mesh is met part by part");
   Meet meeting(alarm, found);
   const auto ball = [](const Shape& shape) { return std::holds_alternative<Ball>(shape); };
   if (round(first) && (ball(first) || !ball(second))) return meeting.round_shape(first, at, second, there, false);
@@ -252,8 +249,7 @@ void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& t
     return meeting.points(points, of_body, space, of_space, swapped);
   }
   const auto polyhedron = [](const Shape& shape) {
-    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape))
-      return prism(cylinder->radius, cylinder->length, kSides);
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) return prism(*cylinder);
     return std::get<Convex>(shape).surface;
   };
   meeting.polyhedra(polyhedron(first), at, polyhedron(second), there);

@@ -10,7 +10,7 @@ namespace sinew::contact {
 namespace {
 
 struct NearestPart {
-  const Vec3& p;
+  const Vec3 &p, &outward;
 
   Simplex operator()(const HalfSpace&) const { return plane_at(Vec3::Zero(), Vec3::UnitZ()); }
   Simplex operator()(const Ball& ball) const { return point_at(Vec3::Zero(), ball.radius); }
@@ -36,6 +36,8 @@ struct NearestPart {
       height = h;
       highest = f;
     }
+    if (const int face = face_of_rim(own, height); face >= 0)
+      return plane_at(own.corners[own.faces[face][0]], own.normals[face]);
     if (height <= 0.0) return plane_at(own.corners[own.faces[highest][0]], own.normals[highest]);
     // Outside: the nearest of all triangles of the faces that see p.
     double least = INFINITY;
@@ -63,7 +65,36 @@ struct NearestPart {
     }
     return best;
   }
+  /// Of the faces that are as high below p as any, and on which p is, the one that looks most against `outward`; -1 if
+  /// there is none. Where a node lies on a rim, rounding is not to choose.
+  int face_of_rim(const Polyhedron& own, double height) const {
+    if (outward.isZero()) return -1;
+    const double same = 1e-3 * own.corners[0].norm();
+    int best = -1;
+    double least = INFINITY;
+    for (std::size_t f = 0; f < own.faces.size(); ++f) {
+      const std::vector<int>& face = own.faces[f];
+      const Vec3& n = own.normals[f];
+      if (n.dot(p - own.corners[face[0]]) < height - same || n.dot(outward) >= least) continue;
+      bool above = true;
+      for (std::size_t i = 0; i < face.size() && above; ++i) {
+        const Vec3 &from = own.corners[face[i]], along = own.corners[face[(i + 1) % face.size()]] - from;
+        above = n.dot(along.cross(p - from)) >= -same * along.norm();
+      }
+      if (!above) continue;
+      least = n.dot(outward);
+      best = static_cast<int>(f);
+    }
+    return best;
+  }
+  Simplex operator()(const Mesh&) const {
+    throw std::invalid_argument("contact::nearest_part: a mesh is met by its triangles");
+  }
 };
+
+Vec3 farthest(const Eigen::Matrix3d& axes, const Vec3& so_far, const Vec3& p) {
+  return so_far.cwiseMax((axes.transpose() * p).cwiseAbs());
+}
 
 struct Reach {
   const Eigen::Matrix3d& axes;
@@ -83,12 +114,39 @@ struct Reach {
   }
   Vec3 operator()(const Convex& convex) const {
     Vec3 own = Vec3::Zero();
-    for (const Vec3& corner : convex.surface.corners) own = own.cwiseMax((axes.transpose() * corner).cwiseAbs());
+    for (const Vec3& corner : convex.surface.corners) own = farthest(axes, own, corner);
+    return own;
+  }
+  Vec3 operator()(const Mesh& mesh) const {
+    Vec3 own = Vec3::Zero();
+    for (const int point : mesh.used) own = farthest(axes, own, mesh.points.col(point));
     return own;
   }
 };
 
 Eigen::Matrix3d about_z(double across, double along) { return Vec3(across, across, along).asDiagonal(); }
+
+/// The sum over tetrahedra from the origin to the triangles of a surface.
+class Enclosed {
+ public:
+  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double six = a.dot(b.cross(c));
+    const Vec3 sum = a + b + c;
+    volume_ += six / 6.0;
+    first_ += six / 24.0 * sum;
+    second_ += six / 120.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+  Bulk bulk() const {
+    const Vec3 centre = first_ / volume_;
+    const Eigen::Matrix3d about = second_ - volume_ * centre * centre.transpose();
+    return {volume_, centre, about.trace() * Eigen::Matrix3d::Identity() - about};
+  }
+
+ private:
+  double volume_ = 0.0;
+  Vec3 first_ = Vec3::Zero();                         // int x
+  Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();  // int x x^T
+};
 
 struct BulkOf {
   Bulk operator()(const HalfSpace&) const { throw std::invalid_argument("contact::bulk: a half-space has no volume"); }
@@ -109,25 +167,20 @@ struct BulkOf {
     const double across = ends.inertia(0, 0) + ends.volume * (off * off - 9.0 / 64.0 * r * r);
     return {middle.volume + ends.volume, Vec3::Zero(), middle.inertia + about_z(across, ends.inertia(2, 2))};
   }
-  /// The sum over tetrahedra from the origin to triangles of the faces.
   Bulk operator()(const Convex& convex) const {
-    Bulk own{0.0, Vec3::Zero(), Eigen::Matrix3d::Zero()};
-    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  // int x x^T
+    Enclosed own;
     const Polyhedron& body = convex.surface;
     for (const std::vector<int>& face : body.faces) {
-      for (std::size_t i = 1; i + 1 < face.size(); ++i) {
-        const Vec3 &a = body.corners[face[0]], &b = body.corners[face[i]], &c = body.corners[face[i + 1]];
-        const double six = a.dot(b.cross(c));
-        const Vec3 sum = a + b + c;
-        own.volume += six / 6.0;
-        own.centre += six / 24.0 * sum;
-        second += six / 120.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
-      }
+      for (std::size_t i = 1; i + 1 < face.size(); ++i)
+        own.add(body.corners[face[0]], body.corners[face[i]], body.corners[face[i + 1]]);
     }
-    own.centre /= own.volume;
-    second -= own.volume * own.centre * own.centre.transpose();
-    own.inertia = second.trace() * Eigen::Matrix3d::Identity() - second;
-    return own;
+    return own.bulk();
+  }
+  Bulk operator()(const Mesh& mesh) const {
+    Enclosed own;
+    for (const std::array<int, 3>& t : mesh.triangles)
+      own.add(mesh.points.col(t[0]), mesh.points.col(t[1]), mesh.points.col(t[2]));
+    return own.bulk();
   }
 };
 
@@ -155,6 +208,17 @@ Skin turned(const std::vector<std::array<double, 2>>& profile) {
   return own;
 }
 
+/// The corners of a polyhedron, with a direction out of it.
+std::vector<Simplex> corners_of(const Polyhedron& own) {
+  std::vector<Simplex> all;
+  for (const Vec3& corner : own.corners) all.push_back(point_at(corner, 0.0));
+  for (std::size_t f = 0; f < own.faces.size(); ++f) {
+    for (const int corner : own.faces[f]) all[corner].normal += own.normals[f];
+  }
+  for (Simplex& corner : all) corner.normal.normalize();
+  return all;
+}
+
 struct Prongs {
   std::vector<Simplex> operator()(const HalfSpace&) const { return {}; }
   std::vector<Simplex> operator()(const Ball& ball) const { return {point_at(Vec3::Zero(), ball.radius)}; }
@@ -165,18 +229,21 @@ struct Prongs {
   }
   std::vector<Simplex> operator()(const Cylinder& cylinder) const {
     const Vec3 end(0.0, 0.0, 0.5 * cylinder.length);
-    return {segment_at(-end, end, Vec3::Zero(), cylinder.radius)};
-  }
-  std::vector<Simplex> operator()(const Convex& convex) const {
-    const Polyhedron& own = convex.surface;
-    std::vector<Simplex> all;
-    for (const Vec3& corner : own.corners) all.push_back(point_at(corner, 0.0));
+    const Polyhedron own = prism(cylinder);
+    std::vector<Simplex> all = corners_of(own);
+    all.push_back(segment_at(-end, end, Vec3::Zero(), cylinder.radius));
     for (std::size_t e = 0; e < own.edges.size(); ++e) {
-      const Vec3 between = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
-      all.push_back(segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], between.normalized(), 0.0));
+      if (own.sides[e][0] < 2) all.push_back(edge_of(own, e));  // of an end and a side
     }
     return all;
   }
+  std::vector<Simplex> operator()(const Convex& convex) const {
+    const Polyhedron& own = convex.surface;
+    std::vector<Simplex> all = corners_of(own);
+    for (std::size_t e = 0; e < own.edges.size(); ++e) all.push_back(edge_of(own, e));
+    return all;
+  }
+  std::vector<Simplex> operator()(const Mesh&) const { return {}; }
 };
 
 /// The two halves of a ball, apart by `length`.
@@ -212,12 +279,25 @@ struct SkinOf {
     for (const std::vector<int>& face : convex.surface.faces) add_face(own, face);
     return own;
   }
+  Skin operator()(const Mesh& mesh) const {
+    Skin own{{}, mesh.triangles};
+    for (Eigen::Index i = 0; i < mesh.points.cols(); ++i) own.points.emplace_back(mesh.points.col(i));
+    return own;
+  }
 };
 
 }  // namespace
 
+Simplex edge_of(const Polyhedron& own, std::size_t e) {
+  const Vec3 between = own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]];
+  return segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], between.normalized(), 0.0);
+}
+
+Polyhedron prism(const Cylinder& cylinder) { return prism(cylinder.radius, cylinder.length, 48); }
 Skin skin(const Shape& shape, double size) { return std::visit(SkinOf{size}, shape); }
-Simplex nearest_part(const Shape& shape, const Vec3& p) { return std::visit(NearestPart{p}, shape); }
+Simplex nearest_part(const Shape& shape, const Vec3& p, const Vec3& outward) {
+  return std::visit(NearestPart{p, outward}, shape);
+}
 std::vector<Simplex> prongs(const Shape& shape) { return std::visit(Prongs{}, shape); }
 Vec3 reach(const Shape& shape, const Eigen::Matrix3d& axes) { return std::visit(Reach{axes}, shape); }
 Bulk bulk(const Shape& shape) { return std::visit(BulkOf{}, shape); }

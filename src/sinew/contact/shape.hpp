@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/contact/mesh.hpp"
 #include "sinew/contact/polyhedron.hpp"
 #include "sinew/contact/simplex.hpp"
 
@@ -27,19 +28,29 @@ struct Cylinder {
   double radius = 0.0, length = 0.0;  ///< [m] > 0
 };
 
+/// The prism of 48 sides that stands for a cylinder where flat parts meet it.
+Polyhedron prism(const Cylinder& cylinder);
+
 /// A box or a hull.
 struct Convex {
   Polyhedron surface;
 };
 
-using Shape = std::variant<HalfSpace, Ball, Capsule, Cylinder, Convex>;
+/// Any closed surface. It is met as surfaces that deform are, part by part (sim/contact_search).
+using Shape = std::variant<HalfSpace, Ball, Capsule, Cylinder, Convex, Mesh>;
 
 /// The part of a shape's surface that is nearest to p: a point, a segment or the plane of a face, with its thickness.
-/// Inside a polyhedron, or a cylinder near its ends, it is the face that is soonest reached.
-Simplex nearest_part(const Shape& shape, const Vec3& p);
+/// Inside a polyhedron, or a cylinder near its ends, it is the face that is soonest reached; of faces that are equally
+/// near, but for a thousandth of the size, the one that looks most against `outward`, the outside of what p belongs to
+/// (zero where that is not known). Throws std::invalid_argument for a mesh.
+Simplex nearest_part(const Shape& shape, const Vec3& p, const Vec3& outward = Vec3::Zero());
 
-/// The points and segments by which a shape presses into a surface that gives way: corners, edges, and the middle or
-/// the axis of what is round, with its radius. Of edges `normal` is between their faces'.
+/// An edge of a polyhedron; its normal is between those of its two faces.
+Simplex edge_of(const Polyhedron& own, std::size_t edge);
+
+/// The points and segments by which a shape presses into a surface of triangles: corners, edges, and the middle or the
+/// axis of what is round, with its radius; a cylinder's rims as those of a prism of 48 sides. The normal of a corner is
+/// between those of its faces. Of a mesh none.
 std::vector<Simplex> prongs(const Shape& shape);
 
 /// Half the edges of the smallest box about the origin that holds it in the directions of `axes` (columns); infinite
@@ -59,7 +70,7 @@ struct Bulk {
   Vec3 centre = Vec3::Zero();                             ///< [m]
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< [m^5] about it, of unit density
 };
-/// Throws std::invalid_argument for a half-space.
+/// Of a surface the volume is negative where it is inside out. Throws std::invalid_argument for a half-space.
 Bulk bulk(const Shape& shape);
 
 }  // namespace sinew::contact

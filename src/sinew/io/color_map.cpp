@@ -6,8 +6,6 @@
 namespace sinew::io {
 namespace {
 
-constexpr Rgb kMissing = rgb(0xb0b0b0);
-
 /// Viridis (S. van der Walt, N. Smith; released to the public domain) at 17 even places.
 constexpr std::array<std::uint32_t, 17> kViridis = {0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d,
                                                     0x2c728e, 0x26828e, 0x21918c, 0x1fa088, 0x28ae80, 0x3fbc73,

@@ -15,6 +15,9 @@ constexpr Rgb rgb(std::uint32_t code) {
   return {(code >> 16 & 255) / 255.0, (code >> 8 & 255) / 255.0, (code & 255) / 255.0};
 }
 
+/// Of what has no value.
+inline constexpr Rgb kMissing = rgb(0xb0b0b0);
+
 /// Viridis at `value` in [0, 1], held outside; grey for NaN.
 Rgb viridis(double value);
 

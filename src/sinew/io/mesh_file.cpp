@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <system_error>
 
@@ -37,7 +38,7 @@ std::string read_bytes(const std::filesystem::path& path) {
   }
   if (!std::filesystem::is_regular_file(status)) {
     fail_path(file, std::filesystem::is_directory(status) ? "is a folder, not a mesh file" : "is not a regular file",
-              "give the path of a .vtk, .vtu or .msh file");
+              "give the path of a .vtk, .vtu or .msh file, or of an .stl or .obj file for a surface");
   }
   std::ifstream stream(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
@@ -181,16 +182,29 @@ void check_folds(const solid::Mesh& mesh, solid::Kind kind, const std::string& f
                               : remedy);
 }
 
+/// Nothing if it is no surface.
+std::optional<solid::Mesh> parse_surface(std::string_view text, std::string_view first, const std::string& name) {
+  if (is_binary_stl(text)) return parse_binary_stl(text, name);
+  if (equal_ignoring_case(first, "solid")) return parse_text_stl(text, name);
+  if (is_obj(first) && !text.starts_with("# vtk")) return parse_obj(text, name);
+  return std::nullopt;
+}
+
 }  // namespace
 
 solid::Mesh read_mesh(const std::filesystem::path& path) { return parse_mesh(read_bytes(path), path.string()); }
 
 solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
-  constexpr const char* formats = "Sinew reads legacy VTK (.vtk), VTU (.vtu) and Gmsh MSH 2.2 and 4.1 (.msh)";
+  constexpr const char* formats =
+      "Sinew reads legacy VTK (.vtk), VTU (.vtu) and Gmsh MSH 2.2 and 4.1 (.msh), and surfaces as STL and OBJ";
   if (bytes.empty()) fail(name, "", "the mesh file is empty", formats);
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::string_view text = bytes.substr(bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
   const std::string_view first = ByteCursor(text, name).peek();
+  if (std::optional<solid::Mesh> surface = parse_surface(text, first, name)) {
+    if (surface->faces.empty()) fail(name, "", "the surface has no triangles", "export the part again");
+    return *std::move(surface);
+  }
   solid::Mesh mesh;
   if (text.starts_with("# vtk")) {
     mesh = parse_legacy_vtk(text, name);
@@ -198,8 +212,14 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
     mesh = parse_vtu(bytes, name);
   } else if (first.starts_with("$")) {
     mesh = parse_gmsh(text, name);
+  } else if (equal_ignoring_case(std::filesystem::path(name).extension().string(), ".stl")) {
+    fail(name, fmt::format("{} bytes", bytes.size()),
+         "is neither a text STL file nor as long as a binary one is, 84 bytes and 50 for each triangle",
+         "the file is cut short: export the part again");
   } else {
-    fail(name, quoted(first), "must begin with \"# vtk DataFile Version\", \"<VTKFile\" or \"$MeshFormat\"", formats);
+    fail(name, quoted(first),
+         "must begin with \"# vtk DataFile Version\", \"<VTKFile\" or \"$MeshFormat\", or be an STL or OBJ file",
+         formats);
   }
   check_mesh(mesh, name);
   return mesh;

@@ -1,6 +1,7 @@
 // Volume meshes from files: legacy VTK (2.0 to 5.x, ASCII and binary), VTU (ASCII, base64 and raw, with or without
 // zlib) and Gmsh MSH (2.2 and 4.1, ASCII and binary). Tetrahedra with 4 or 10 nodes and hexahedra with 8 are used,
-// faces, lines and points only as parts of groups; all other cells are counted by kind.
+// faces, lines and points only as parts of groups; all other cells are counted by kind. Surfaces also from STL (ASCII
+// and binary) and OBJ.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,8 @@
 
 namespace sinew::io {
 
-/// Reads and checks the mesh. Its format is told from its content, not from its name. Throws InputError.
+/// Reads and checks the mesh, which has cells or, of a surface, faces alone. Its format is told from its content, not
+/// from its name. Throws InputError.
 solid::Mesh read_mesh(const std::filesystem::path& path);
 
 /// The same for a file that is in memory; `name` stands for it in messages.

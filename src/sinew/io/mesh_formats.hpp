@@ -13,4 +13,11 @@ solid::Mesh parse_legacy_vtk(std::string_view bytes, const std::string& file);
 solid::Mesh parse_vtu(std::string_view bytes, const std::string& file);
 solid::Mesh parse_gmsh(std::string_view bytes, const std::string& file);
 
+// Surfaces have no word of their own to begin with.
+bool is_binary_stl(std::string_view bytes);
+bool is_obj(std::string_view first_word);
+solid::Mesh parse_binary_stl(std::string_view bytes, const std::string& file);
+solid::Mesh parse_text_stl(std::string_view bytes, const std::string& file);
+solid::Mesh parse_obj(std::string_view bytes, const std::string& file);
+
 }  // namespace sinew::io

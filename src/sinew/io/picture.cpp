@@ -170,6 +170,14 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool 
     sign(left);
     right = left - 34;
   };
+  const auto swatch = [&](double x, const Rgb& color, double fill) {
+    cairo_rectangle(page.cairo(), x, kBase - 16, 30, 19);
+    page.color(color, fill);
+    cairo_fill_preserve(page.cairo());
+    page.color(kGrey, 0.6);
+    cairo_set_line_width(page.cairo(), 1.5);
+    cairo_stroke(page.cairo());
+  };
   if (!end.outputs.empty())
     entry(rest.outputs.empty() ? "output" : "output and its travel", 24, [&](double x) {
       draw_output_sign(page, {x + 8, kBase - 6});
@@ -178,17 +186,12 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool 
     entry("contact force", 38, [&](double x) { page.line({x, kBase - 6}, {x + 30, kBase - 6}, 2.2, kForce); });
   if (!end.sliding_points.empty())
     entry("sliding point", 18, [&](double x) { page.disc({x + 5, kBase - 6}, 4.5, kWhite, 1.6, kInk); });
+  if (std::any_of(end.bodies.begin(), end.bodies.end(), [](const BodySnapshot& body) { return !body.ground; }))
+    entry("rigid", 40, [&](double x) { swatch(x, kMissing, 1.0); });
   if (!end.rods.empty() && rods_orange)
     entry("rod", 42, [&](double x) { page.line({x + 3, kBase - 6}, {x + 31, kBase - 6}, 5.0, kRod); });
   if (!end.solids.empty()) {
-    entry("at rest", 40, [&](double x) {
-      cairo_rectangle(page.cairo(), x, kBase - 16, 30, 19);
-      page.color(kGrey, 0.16);
-      cairo_fill_preserve(page.cairo());
-      page.color(kGrey, 0.6);
-      cairo_set_line_width(page.cairo(), 1.5);
-      cairo_stroke(page.cairo());
-    });
+    entry("at rest", 40, [&](double x) { swatch(x, kGrey, 0.16); });
   } else if (!rest.rods.empty()) {
     entry("at rest", 42, [&](double x) {
       const double dashes[] = {7, 7};

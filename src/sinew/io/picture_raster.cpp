@@ -8,7 +8,6 @@ namespace {
 
 constexpr float kJump = 9.0f;  ///< [px] a step in depth that is outlined
 constexpr double kRim = 0.55;  ///< [px] half the width of an edge between triangles
-constexpr Rgb kMissing = rgb(0xb0b0b0);
 
 std::uint8_t byte(double part) {
   return static_cast<std::uint8_t>(255.0 * (part > 0.0 ? part < 1.0 ? part : 1.0 : 0.0) + 0.5);

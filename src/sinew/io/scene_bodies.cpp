@@ -43,6 +43,18 @@ Type<CapsuleShape> capsule() {
         field<C>({"length", required, "its length without the round ends [m]", "30 mm"}, &C::length, length())}});
 }
 
+Type<MeshShape> mesh() {
+  using M = MeshShape;
+  return map<M>(
+      {"a closed surface from a file",
+       {field<M>({"file", required, "its triangles (.stl, .obj, or a volume mesh), looked up from the scene's folder",
+                  "part.stl"},
+                 &M::file, file_name()),
+        field<M>({"scale", optional, "what its coordinates are multiplied by to be in m", "0.001"}, &M::scale,
+                 quantity(Dimension::number, above(0.0))),
+        field<M>({"hull", optional, "the smallest convex body around it instead", "true"}, &M::hull, boolean())}});
+}
+
 Type<PlaneShape> plane() {
   using P = PlaneShape;
   return map<P>(
@@ -62,7 +74,8 @@ std::vector<Field<T>> shape_fields(Shape T::*where) {
   return {one("box", "a box around the origin of its axes", "{size: [20 mm, 20 mm, 20 mm]}", box()),
           one("sphere", "a sphere around the origin", "{radius: 10 mm}", sphere()),
           one("cylinder", "a cylinder about z", "{radius: 10 mm, length: 50 mm}", cylinder()),
-          one("capsule", "all within a radius of a segment along z", "{radius: 5 mm, length: 30 mm}", capsule())};
+          one("capsule", "all within a radius of a segment along z", "{radius: 5 mm, length: 30 mm}", capsule()),
+          one("mesh", "a closed surface of triangles, in the axes of its file", "{file: part.stl}", mesh())};
 }
 
 Range part() { return {.lower = 0.0, .upper = 1.0}; }
@@ -94,7 +107,8 @@ Type<RigidBody> rigid_body() {
   return map<B>(
       {"a rigid body",
        together<B>(shape_fields<B>(&B::shape),
-                   {field<B>({"pose", optional, "where its middle is at the start", "{translate: [0, 0, 10 mm]}"},
+                   {field<B>({"pose", optional, "where its axes are at the start: at its middle, or those of its mesh",
+                              "{translate: [0, 0, 10 mm]}"},
                              &B::pose, pose()),
                     field<B>({"mass", optional, "its mass [kg], instead of density", "30 g"}, &B::mass,
                              quantity(Dimension::mass, above(0.0))),
@@ -105,7 +119,7 @@ Type<RigidBody> rigid_body() {
                     field<B>({"spin", optional, "its angular velocity at the start, about the world's axes [rad/s]",
                               "[0, 0, 10 rad/s]"},
                              &B::spin, vec3(Dimension::turning))}),
-       {exactly_one({"box", "sphere", "cylinder", "capsule"}), exactly_one({"mass", "density"})}});
+       {exactly_one({"box", "sphere", "cylinder", "capsule", "mesh"}), exactly_one({"mass", "density"})}});
 }
 
 Type<Obstacle> obstacle() {
@@ -119,7 +133,7 @@ Type<Obstacle> obstacle() {
                      flat.schema},
                     field<O>({"pose", optional, "where it stands", "{translate: [0, 0, 10 mm]}"}, &O::pose, pose()),
                     field<O>({"frame", optional, "the frame that carries it", "hand"}, &O::frame, name_of("frame"))}),
-       {exactly_one({"box", "sphere", "cylinder", "capsule", "plane"})}});
+       {exactly_one({"box", "sphere", "cylinder", "capsule", "mesh", "plane"})}});
 }
 
 Type<Contact> contact() {

@@ -48,11 +48,6 @@ Type<SolidPart> part() {
                          {exactly_one(region_names())}});
 }
 
-Type<std::filesystem::path> file_name() {
-  const Type<std::string> name = text();
-  return {[=](const At& at) { return std::filesystem::path(name.read(at)); }, name.schema};
-}
-
 /// The mass is known from one of mass and density, or from the materials' own densities.
 Rule mass_or_density() {
   const Rule one = exactly_one({"mass", "density"}), none = at_most_one({"mass", "density"});

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace sinew::io {
 namespace {
@@ -43,13 +45,29 @@ Type<Vec3> direction() {
 
 Type<In> in() { return word_of<In>({"object", "world"}); }
 
+Type<std::filesystem::path> file_name() {
+  const Type<std::string> name = text();
+  return {[=](const At& at) { return std::filesystem::path(name.read(at)); }, name.schema};
+}
+
 Type<Pose> pose() {
+  const auto check = [](const Pose& own, const At& at) {
+    for (int i = 0; i < 3; ++i) {
+      if (std::abs(own.rotate[i]) > 2.0 * std::numbers::pi)
+        at.child("rotate")
+            .item(static_cast<std::size_t>(i))
+            .refuse("must be within one turn, 6.283 rad",
+                    "leave out whole turns; a number alone is in radians, write degrees as `90 deg`");
+    }
+  };
   return map<Pose>(
       {"a pose",
        {field<Pose>({"rotate", optional, "the angles [a, b, c] of R = Rz(c) Ry(b) Rx(a) [rad]", "[0, 0, 90 deg]"},
                     &Pose::rotate, vec3(Dimension::angle)),
         field<Pose>({"translate", optional, "the shift after the rotation [m]", "[0, 20 mm, 0]"}, &Pose::translate,
-                    vec3(Dimension::length))}});
+                    vec3(Dimension::length))},
+       {},
+       check});
 }
 
 Type<std::vector<double>> times() { return list<double>("times", quantity(Dimension::time), {1}, check_ascending); }

@@ -14,6 +14,7 @@ Type<Vec3> direction();                       ///< any vector but zero
 Type<std::vector<Vec3>> points(Count count);  ///< [m], no two neighbours the same
 Type<In> in();
 Type<Pose> pose();
+Type<std::filesystem::path> file_name();
 Type<std::vector<double>> times();               ///< ascending
 Type<std::vector<double>> lengths(Count count);  ///< ascending, not negative
 Type<Drive> drive(Dimension dimension);

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
+#include <stdexcept>
+#include <utility>
 
+#include "sinew/contact/hull.hpp"
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/contacts.hpp"
 
@@ -19,31 +21,135 @@ void require_size(double value, const std::string& path) {
     reject(path, text(value) + " m", "must be between 1e-9 m and 1e6 m", "check its unit");
 }
 
-struct MakeShape {
-  const std::string& path;
+/// The triangles of a mesh in its own axes [m].
+struct Triangles {
+  Eigen::Matrix3Xd points;
+  std::vector<solid::Triangle> triangles;
+};
+Triangles read_triangles(const Scene& scene, const MeshReader& read_mesh, const MeshShape& shape,
+                         const std::string& path) {
+  require_positive(shape.scale, path + ".scale", "0.001 if the mesh is in millimetres");
+  solid::Mesh mesh = read_named(scene, read_mesh, shape.file, path + ".file");
+  Triangles own{{}, mesh.cells.empty() ? std::move(mesh.faces) : solid::surface(mesh.cells)};
+  if (own.triangles.empty())
+    reject(path + ".file", shape.file.string(), "has no triangles", "give the surface of a body");
+  // Points of no triangle, as the inner ones of a volume, are left out.
+  std::map<int, int> number;
+  std::vector<Vec3> points;
+  for (solid::Triangle& triangle : own.triangles) {
+    for (int& corner : triangle) {
+      const auto [entry, fresh] = number.try_emplace(corner, static_cast<int>(points.size()));
+      if (fresh) points.emplace_back(shape.scale * mesh.nodes.col(corner));
+      corner = entry->second;
+    }
+  }
+  own.points.resize(3, std::ssize(points));
+  for (std::size_t i = 0; i < points.size(); ++i) own.points.col(static_cast<Eigen::Index>(i)) = points[i];
+  return own;
+}
 
-  contact::Shape operator()(const BoxShape& box) const {
+/// A part of a surface whose triangles look inward though it is no cavity of another part; -1 if there is none. Parts
+/// are numbered by their first triangle.
+int inside_out(const contact::Mesh& mesh) {
+  std::vector<int> part(mesh.triangles.size(), -1);
+  for (std::size_t first = 0; first < part.size(); ++first) {
+    if (part[first] >= 0) continue;
+    std::vector<int> waiting{static_cast<int>(first)};
+    std::vector<solid::Triangle> own;
+    while (!waiting.empty()) {
+      const int at = waiting.back();
+      waiting.pop_back();
+      if (part[at] >= 0) continue;
+      part[at] = static_cast<int>(first);
+      own.push_back(mesh.triangles[at]);
+      for (const int other : mesh.beside[at]) {
+        if (other >= 0) waiting.push_back(other);
+      }
+    }
+    const contact::Mesh alone = contact::make_mesh(mesh.points, own);
+    if (contact::bulk(alone).volume > 0.0) continue;
+    // A cavity's points are in what the other parts enclose.
+    std::vector<solid::Triangle> others;
+    for (const solid::Triangle& t : mesh.triangles) {
+      if (std::find(own.begin(), own.end(), t) == own.end()) others.push_back(t);
+    }
+    const contact::Mesh rest = contact::make_mesh(mesh.points, others);
+    if (!contact::inside(rest, rest.points, rest.faces, mesh.points.col(own[0][0]))) return static_cast<int>(first);
+  }
+  return -1;
+}
+
+contact::Shape shape_of(const Triangles& own, bool hull) {
+  if (!hull) return contact::make_mesh(own.points, own.triangles);
+  std::vector<Vec3> corners;
+  for (const solid::Triangle& triangle : own.triangles) {
+    for (const int corner : triangle) corners.emplace_back(own.points.col(corner));
+  }
+  return contact::Convex{contact::hull(corners)};
+}
+
+/// A shape in axes at its centre of mass, and where these are in those of the scene.
+struct MadeShape {
+  contact::Shape shape;
+  Vec3 middle = Vec3::Zero();  ///< [m]
+};
+
+struct MakeShape {
+  const Scene& scene;
+  const std::string& path;
+  const MeshReader& read_mesh;
+
+  MadeShape operator()(const BoxShape& box) const {
     for (int i = 0; i < 3; ++i) require_size(box.size[i], path + ".box.size");
-    return contact::Convex{contact::box(box.size)};
+    return {contact::Convex{contact::box(box.size)}};
   }
-  contact::Shape operator()(const SphereShape& sphere) const {
+  MadeShape operator()(const SphereShape& sphere) const {
     require_size(sphere.radius, path + ".sphere.radius");
-    return contact::Ball{sphere.radius};
+    return {contact::Ball{sphere.radius}};
   }
-  contact::Shape operator()(const CylinderShape& cylinder) const {
+  MadeShape operator()(const CylinderShape& cylinder) const {
     require_size(cylinder.radius, path + ".cylinder.radius");
     require_size(cylinder.length, path + ".cylinder.length");
-    return contact::Cylinder{cylinder.radius, cylinder.length};
+    return {contact::Cylinder{cylinder.radius, cylinder.length}};
   }
-  contact::Shape operator()(const CapsuleShape& capsule) const {
+  MadeShape operator()(const CapsuleShape& capsule) const {
     require_size(capsule.radius, path + ".capsule.radius");
     require_size(capsule.length, path + ".capsule.length");
-    return contact::Capsule{capsule.radius, capsule.length};
+    return {contact::Capsule{capsule.radius, capsule.length}};
   }
-  contact::Shape operator()(const PlaneShape& plane) const {
+  MadeShape operator()(const PlaneShape& plane) const {
     if (!(plane.normal.norm() > 0.0) || !plane.normal.allFinite())
       reject(path + ".plane.normal", text(plane.normal), "must not be zero", "give the direction out of the ground");
-    return contact::HalfSpace{};
+    return {contact::HalfSpace{}};
+  }
+  MadeShape operator()(const MeshShape& mesh) const {
+    const std::string own_path = path + ".mesh", file = mesh.file.string();
+    Triangles own = read_triangles(scene, read_mesh, mesh, own_path);
+    const Vec3 extent = own.points.rowwise().maxCoeff() - own.points.rowwise().minCoeff();
+    if (!(extent.maxCoeff() > kSmallest && extent.maxCoeff() < kLargest))
+      reject(own_path + ".scale", text(mesh.scale), "makes the body " + text(extent.maxCoeff()) + " m large",
+             "give the scale that turns mesh coordinates into metres, 0.001 for millimetres");
+    if (const int open = mesh.hull ? 0 : contact::open_edges(own.triangles); open > 0)
+      reject(
+          own_path + ".file", file,
+          "has " + std::to_string(open) + " edges where not exactly two triangles meet, turned the same way",
+          "close the surface and turn all its triangles outward, or write `hull: true` for the convex body around it");
+    try {
+      const Vec3 middle = 0.5 * (own.points.rowwise().maxCoeff() + own.points.rowwise().minCoeff());
+      own.points.colwise() -= middle;  // for the sake of its inertia's digits
+      const contact::Shape made = shape_of(own, mesh.hull);
+      const contact::Bulk bulk = contact::bulk(made);
+      const contact::Mesh* surface = std::get_if<contact::Mesh>(&made);
+      if (!(std::abs(bulk.volume) > 1e-12 * std::pow(extent.maxCoeff(), 3)))
+        reject(own_path + ".file", file, "encloses no volume", "give a body that has a volume");
+      if (bulk.volume < 0.0 || (surface && inside_out(*surface) >= 0))
+        reject(own_path + ".file", file, bulk.volume < 0.0 ? "is inside out" : "has a part that is inside out",
+               "turn its triangles outward: counter-clockwise where one looks at them from outside");
+      own.points.colwise() -= bulk.centre;
+      return {shape_of(own, mesh.hull), middle + bulk.centre};
+    } catch (const std::invalid_argument&) {
+      reject(own_path + ".file", file, "its points lie in one plane, or are too few", "give a body that has a volume");
+    }
   }
 };
 
@@ -73,33 +179,6 @@ std::vector<double> points_along(const RodModel& rod) {
   return at;
 }
 
-/// What of a solid's surface may touch something.
-void prepare_surface(SolidModel& solid) {
-  std::map<std::array<int, 2>, Ridge> ridges;
-  std::vector<contact::Box> faces, edges;
-  const auto around = [&solid](std::span<const int> nodes) {
-    contact::Box box;
-    for (const int node : nodes) box.extend(Vec3(solid.body.rest.col(node)));
-    return box;
-  };
-  for (const solid::Triangle& triangle : solid.surface) {
-    solid.surface_nodes.insert(solid.surface_nodes.end(), triangle.begin(), triangle.end());
-    faces.push_back(around(triangle));
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int from = triangle[i], to = triangle[(i + 1) % 3], third = triangle[(i + 2) % 3];
-      const std::array<int, 2> ends{std::min(from, to), std::max(from, to)};
-      ridges.try_emplace(ends, Ridge{ends, {third, third}}).first->second.sides[1] = third;
-    }
-  }
-  solid::make_ascending(solid.surface_nodes);
-  for (const auto& [ends, ridge] : ridges) {
-    solid.ridges.push_back(ridge);
-    edges.push_back(around(ends));
-  }
-  solid.faces = contact::Tree(faces);
-  solid.edges = contact::Tree(edges);
-}
-
 }  // namespace
 
 Collider find_collider(const Model& model, const std::string& name, const std::string& path) {
@@ -112,11 +191,13 @@ Collider find_collider(const Model& model, const std::string& name, const std::s
   reject(path, name, "nothing of this name can be touched", "known: " + known);
 }
 
-void build_body(Model& model, const std::string& name, const RigidBody& body) {
+void build_body(Model& model, const std::string& name, const RigidBody& body, const MeshReader& read_mesh) {
   const std::string path = "bodies." + name;
   BodyModel own;
   own.name = name;
-  own.shape = std::visit(MakeShape{path}, body.shape);
+  MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, body.shape);
+  own.shape = std::move(made.shape);
+  own.prongs = contact::prongs(own.shape);
   const contact::Bulk bulk = contact::bulk(own.shape);
   if (body.mass.has_value() == body.density.has_value())
     reject(path, "", "needs exactly one of mass and density", "give `mass: 30 g` or `density: 1200 kg/m^3`");
@@ -127,17 +208,19 @@ void build_body(Model& model, const std::string& name, const RigidBody& body) {
   const Placement at = placement(body.pose);
   if (!at.p.allFinite() || !body.velocity.allFinite() || !body.spin.allFinite())
     reject(path, "", "pose, velocity and spin must be finite", "check its numbers");
-  own.start = {at.p, at.R, body.velocity, at.R.transpose() * body.spin};
+  own.start = {apply(at, made.middle), at.R, body.velocity, at.R.transpose() * body.spin};
   model.bodies.push_back(own);
 }
 
-void build_obstacle(Model& model, const std::string& name, const Obstacle& obstacle) {
+void build_obstacle(Model& model, const std::string& name, const Obstacle& obstacle, const MeshReader& read_mesh) {
   const std::string path = "obstacles." + name;
   ObstacleModel own;
   own.name = name;
-  own.shape = std::visit([&](const auto& shape) { return MakeShape{path}(shape); }, obstacle.shape);
+  MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, obstacle.shape);
+  own.shape = std::move(made.shape);
+  own.prongs = contact::prongs(own.shape);
   own.frame = find_frame(model.scene, obstacle.frame, path);
-  own.pose = stand(model.scene, own.frame, obstacle.pose);
+  own.pose = compose(stand(model.scene, own.frame, obstacle.pose), {rod::Mat3::Identity(), made.middle});
   if (const PlaneShape* plane = std::get_if<PlaneShape>(&obstacle.shape)) {
     const Vec3 up = plane->normal.normalized();
     own.pose = compose(own.pose, {lie::exp(lie::shortest_rotation(Vec3::UnitZ(), up)), plane->point});
@@ -215,7 +298,7 @@ void build_pairs(Model& model) {
     reject("analysis", "", "contact is computed in dynamic scenes alone",
            "write `analysis: dynamic`, and damping that brings it to rest; or `off: true` for pairs that never meet");
   for (RodModel& rod : model.rods) rod.touching = points_along(rod);
-  for (SolidModel& solid : model.solids) prepare_surface(solid);
+  for (SolidModel& solid : model.solids) solid.skin = contact::make_mesh(solid.body.rest, solid.surface);
 }
 
 }  // namespace sinew::building

@@ -39,18 +39,6 @@ std::vector<int> compact(solid::Mesh& mesh) {
   return number;
 }
 
-/// Reads a mesh. What is wrong inside it carries the mesh's own file and line; a path that leads nowhere is the field's
-/// fault.
-solid::Mesh read_named(const MeshReader& read_mesh, const std::filesystem::path& file, const std::string& path) {
-  try {
-    return read_mesh(file);
-  } catch (const InputError& error) {
-    InputFault fault = error.fault();
-    if (fault.file.empty()) fault.path = path;
-    throw InputError(fault);
-  }
-}
-
 /// Cells must be tied wherever they meet.
 void check_tied(const std::vector<solid::Cell>& cells, const std::string& path) {
   const auto name = [&cells](int cell) {
@@ -133,6 +121,17 @@ Eigen::Array<bool, 3, Eigen::Dynamic> hold(const Scene& scene, const Solid& soli
 
 }  // namespace
 
+solid::Mesh read_named(const Scene& scene, const MeshReader& read_mesh, const std::filesystem::path& file,
+                       const std::string& path) {
+  try {
+    return read_mesh(file.is_absolute() ? file : scene.folder / file);
+  } catch (const InputError& error) {
+    InputFault fault = error.fault();
+    if (fault.file.empty()) fault.path = path;
+    throw InputError(fault);
+  }
+}
+
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
                        std::vector<std::string>& warnings) {
   const std::string path = "solids." + name;
@@ -141,8 +140,10 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   model.frame = find_frame(scene, solid.frame, path);
   require_positive(solid.scale, path + ".scale", "0.001 if the mesh is in millimetres");
 
-  solid::Mesh mesh =
-      read_named(read_mesh, solid.mesh.is_absolute() ? solid.mesh : scene.folder / solid.mesh, path + ".mesh");
+  solid::Mesh mesh = read_named(scene, read_mesh, solid.mesh, path + ".mesh");
+  if (mesh.cells.empty())
+    reject(path + ".mesh", solid.mesh.string(), "is a surface without elements",
+           "mesh the volume inside it, for example with Gmsh, and name that file");
   model.mesh.number = compact(mesh);
   check_tied(mesh.cells, path + ".mesh");
   raise_order(mesh, solid.order, path, warnings);

@@ -59,13 +59,18 @@ enum class Spread { evenly, lumped };
 /// Adds up to 1.
 Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection, Spread spread);
 
+/// Reads a mesh of a scene. What is wrong inside it carries the mesh's own file and line; a path that leads nowhere is
+/// the fault of the field `path`.
+solid::Mesh read_named(const Scene& scene, const MeshReader& read_mesh, const std::filesystem::path& file,
+                       const std::string& path);
+
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
                        std::vector<std::string>& warnings);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
 GeometricCableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
 
-void build_body(Model& model, const std::string& name, const RigidBody& body);
-void build_obstacle(Model& model, const std::string& name, const Obstacle& obstacle);
+void build_body(Model& model, const std::string& name, const RigidBody& body, const MeshReader& read_mesh);
+void build_obstacle(Model& model, const std::string& name, const Obstacle& obstacle, const MeshReader& read_mesh);
 /// Which objects stop each other, once all are there.
 void build_pairs(Model& model);
 

@@ -40,6 +40,16 @@ const contact::Shape& shape_of(const Model& model, const Collider& own) {
   return own.kind == Kind::body ? model.bodies[own.number].shape : model.obstacles[own.number].shape;
 }
 
+const std::vector<contact::Simplex>& prongs_of(const Model& model, const Collider& own) {
+  return own.kind == Kind::body ? model.bodies[own.number].prongs : model.obstacles[own.number].prongs;
+}
+
+const contact::Mesh* mesh_of(const Model& model, const Collider& own) {
+  if (own.kind == Kind::rod) return nullptr;
+  if (own.kind == Kind::solid) return &model.solids[own.number].skin;
+  return std::get_if<contact::Mesh>(&shape_of(model, own));
+}
+
 const std::string& name_of(const Model& model, const Collider& own) {
   switch (own.kind) {
     case Kind::obstacle:

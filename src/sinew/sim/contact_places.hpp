@@ -27,6 +27,12 @@ bool is_rigid(const Collider& own);
 /// Of what is rigid.
 const contact::Shape& shape_of(const Model& model, const Collider& own);
 
+/// The parts by which it presses into surfaces.
+const std::vector<contact::Simplex>& prongs_of(const Model& model, const Collider& own);
+
+/// The surface of a solid, or of a rigid mesh; null of all else.
+const contact::Mesh* mesh_of(const Model& model, const Collider& own);
+
 /// The name it has in the scene.
 const std::string& name_of(const Model& model, const Collider& own);
 

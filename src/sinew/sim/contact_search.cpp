@@ -2,49 +2,88 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace sinew {
 
 using Kind = Collider::Kind;
 using contact::Simplex;
 
-void fit(const SolidModel& model, const Eigen::Matrix3Xd& x, Surface& own) {
-  own.outward.setZero(3, x.cols());
+namespace {
+
+void fit_boxes(Surface& own) {
+  const contact::Mesh& mesh = *own.mesh;
+  const Eigen::Matrix3Xd& x = own.x;
+  contact::find_outward(mesh, x, own.outward);
   own.boxes.clear();
-  for (const solid::Triangle& t : model.surface) {
-    const Vec3 area = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0]));
+  for (const std::array<int, 3>& t : mesh.triangles) {
     contact::Box& box = own.boxes.emplace_back();
-    for (const int node : t) {
-      own.outward.col(node) += area;
-      box.extend(Vec3(x.col(node)));
-    }
-  }
-  if (own.boxes.empty()) return;
-  own.outward.colwise().normalize();
-  if (own.faces.whole().isEmpty()) {
-    own.faces = model.faces;
-    own.edges = model.edges;
+    for (const int point : t) box.extend(Vec3(x.col(point)));
   }
   own.faces.fit(own.boxes);
   own.boxes.clear();
-  for (const Ridge& ridge : model.ridges) {
+  for (const contact::Ridge& ridge : mesh.ridges) {
     contact::Box& box = own.boxes.emplace_back();
-    for (const int node : ridge.ends) box.extend(Vec3(x.col(node)));
+    for (const int point : ridge.ends) box.extend(Vec3(x.col(point)));
   }
   own.edges.fit(own.boxes);
+}
+
+}  // namespace
+
+void Surfaces::fit(const Collider& own, const Moment& now) {
+  std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
+  if (static_cast<int>(all.size()) <= own.number) all.resize(static_cast<std::size_t>(own.number) + 1);
+  Surface& surface = all[static_cast<std::size_t>(own.number)];
+  if (!surface.mesh) {
+    surface.mesh = mesh_of(now.model, own);
+    if (!surface.mesh) return;
+    surface.faces = surface.mesh->faces;
+    surface.edges = surface.mesh->edges;
+  }
+  if (is_rigid(own)) {
+    const contact::Pose pose = now.pose(own);
+    if (surface.pose && surface.pose->R == pose.R && surface.pose->p == pose.p) return;
+    surface.pose = pose;
+    surface.x = (pose.R * surface.mesh->points).colwise() + pose.p;
+  } else {
+    surface.x = now.state.solids[own.number].x;
+  }
+  fit_boxes(surface);
+}
+
+void Surfaces::fit(const Moment& now) {
+  std::vector<Collider> fitted;
+  for (const PairModel& pair : now.model.pairs) {
+    for (const Collider& own : {pair.a, pair.b}) {
+      if (own.kind == Kind::rod || std::find(fitted.begin(), fitted.end(), own) != fitted.end()) continue;
+      fitted.push_back(own);
+      fit(own, now);
+    }
+  }
+}
+
+const Surface* Surfaces::of(const Collider& own) const {
+  if (own.kind == Kind::rod) return nullptr;
+  const std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
+  if (static_cast<int>(all.size()) <= own.number) return nullptr;
+  const Surface& surface = all[static_cast<std::size_t>(own.number)];
+  return surface.mesh ? &surface : nullptr;
 }
 
 namespace {
 
 class Search {
  public:
-  Search(const Moment& start, double alarm, const std::vector<Surface>& surfaces, std::vector<ContactState>& found)
-      : start_(start), alarm_(alarm), surfaces_(surfaces), found_(found) {}
+  Search(const Moment& start, double alarm, double depth, const Surfaces& surfaces, std::vector<ContactState>& found)
+      : start_(start), alarm_(alarm), depth_(depth), surfaces_(surfaces), found_(found) {}
 
   void pair(int number) {
     pair_ = number;
     const PairModel& own = start_.model.pairs[number];
-    if (is_rigid(own.a) && is_rigid(own.b)) {
+    depth_ = std::max(depth_, own.depth);
+    if (is_rigid(own.a) && is_rigid(own.b) && !surfaces_.of(own.a) && !surfaces_.of(own.b)) {
       shapes(own.a, own.b);
       return;
     }
@@ -53,7 +92,55 @@ class Search {
     edges(own.a, own.b);
   }
 
+  /// How deep points of one are in the other.
+  double overlap(int number) {
+    const PairModel& own = start_.model.pairs[number];
+    if (own.a == own.b) return 0.0;
+    double deepest = 0.0;
+    if (is_rigid(own.a) && is_rigid(own.b) && !surfaces_.of(own.a) && !surfaces_.of(own.b)) {
+      meetings_.clear();
+      contact::meet(shape_of(start_.model, own.a), start_.pose(own.a), shape_of(start_.model, own.b),
+                    start_.pose(own.b), 0.0, meetings_);
+      for (const contact::Meeting& met : meetings_) {
+        ContactSide a, b;
+        a.on = met.swapped ? own.b : own.a;
+        b.on = met.swapped ? own.a : own.b;
+        a.local = met.a;
+        b.local = met.b;
+        deepest = std::max(deepest, -contact::nearest(start_.placed(a), start_.placed(b)).gap);
+      }
+      return deepest;
+    }
+    for (const auto& [poking, faced] : {std::pair(own.a, own.b), std::pair(own.b, own.a)}) {
+      if (faced.kind == Kind::rod) continue;
+      const Collider& in = faced;
+      each_prong(poking, Simplex::Kind::point, around(faced),
+                 [&](const ContactSide& side, int) { deepest = std::max(deepest, depth_in(in, start_.placed(side))); });
+    }
+    return deepest;
+  }
+
  private:
+  /// How deep a point is in an object, with its thickness; 0 outside.
+  double depth_in(const Collider& own, const Simplex& point) const {
+    const Surface* surface = surfaces_.of(own);
+    if (!surface) {
+      const contact::Pose pose = start_.pose(own);
+      const Vec3 there = pose.R.transpose() * (point.x[0] - pose.p);
+      const Simplex part = contact::nearest_part(shape_of(start_.model, own), there);
+      return std::max(0.0, -contact::nearest(contact::point_at(there, point.radius), part).gap);
+    }
+    const bool in = contact::inside(*surface->mesh, surface->x, surface->faces, point.x[0]);
+    if (!in && point.radius == 0.0) return 0.0;
+    double least = INFINITY;
+    for (const std::array<int, 3>& t : surface->mesh->triangles) {
+      const std::array<Vec3, 3> x = {surface->x.col(t[0]), surface->x.col(t[1]), surface->x.col(t[2])};
+      const std::array<double, 3> weights = contact::on_triangle(point.x[0], x[0], x[1], x[2]);
+      least = std::min(least, (point.x[0] - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
+    }
+    return std::max(0.0, point.radius + (in ? least : -least));
+  }
+
   /// By which a contact of a pair is known again: what it is, and the numbers of its two parts.
   enum class Part : std::uint64_t { point_of_first, point_of_second, edges };
   static std::uint64_t key(Part part, int i, int j) {
@@ -81,6 +168,7 @@ class Search {
     if (!moves(a) && !moves(b)) return;
     ContactState& own = found_.emplace_back();
     own.pair = pair_;
+    own.on_second = a.on != start_.model.pairs[pair_].a;
     own.part = part;
     own.a = a;
     own.b = b;
@@ -100,22 +188,30 @@ class Search {
     }
   }
 
-  /// Visits the parts of an object with which it pokes into others, of one kind, with their numbers: nodes and ridges
-  /// of a solid near `where`, points and pieces of a rod, corners and edges of a shape.
+  /// Visits the parts of an object with which it pokes into others, of one kind, with their numbers: points and ridges
+  /// of a surface near `where`, points and pieces of a rod, corners and edges of a shape.
   template <class Visit>
   void each_prong(const Collider& own, Simplex::Kind kind, const contact::Box& where, const Visit& visit) const {
-    ContactSide side;
-    side.on = own;
-    side.local.kind = kind;
-    if (is_rigid(own)) {
-      const std::vector<Simplex> all = contact::prongs(shape_of(start_.model, own));
+    if (const Surface* surface = surfaces_.of(own)) {
+      if (kind == Simplex::Kind::point) {
+        each_point(own, *surface, where, visit);
+      } else {
+        each_ridge(own, *surface, where, visit);
+      }
+    } else if (is_rigid(own)) {
+      const std::vector<Simplex>& all = prongs_of(start_.model, own);
       for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].kind != kind) continue;
+        ContactSide side;
+        side.on = own;
         side.local = all[i];
         visit(side, static_cast<int>(i));
       }
-    } else if (own.kind == Kind::rod) {
+    } else {
       const RodModel& rod = start_.model.rods[own.number];
+      ContactSide side;
+      side.on = own;
+      side.local.kind = kind;
       const std::size_t count = rod.touching.size(), used = kind == Simplex::Kind::point ? 1 : 2;
       for (std::size_t i = 0; i + used <= count; ++i) {
         side.local.radius = 0.0;
@@ -125,47 +221,71 @@ class Search {
         }
         visit(side, static_cast<int>(i));
       }
-    } else {
-      const SolidModel& solid = start_.model.solids[own.number];
-      const Eigen::Matrix3Xd& x = start_.state.solids[own.number].x;
-      if (kind == Simplex::Kind::point) {
-        for (const int node : solid.surface_nodes) {
-          if (!where.contains(Vec3(x.col(node)))) continue;
-          side.nodes[0] = node;
-          visit(side, node);
-        }
-        return;
-      }
-      surfaces_[own.number].edges.each_near(where, [&](int number) {
-        const Ridge& ridge = solid.ridges[number];
-        const auto normal = [&](int third) {
-          return (x.col(ridge.ends[1]) - x.col(ridge.ends[0])).cross(x.col(third) - x.col(ridge.ends[0])).normalized();
-        };
-        // One of the two is turned the other way; which does not matter for how much they differ.
-        const Vec3 one = normal(ridge.sides[0]), other = -normal(ridge.sides[1]);
-        const Vec3 outward =
-            (surfaces_[own.number].outward.col(ridge.ends[0]) + surfaces_[own.number].outward.col(ridge.ends[1]))
-                .normalized();
-        if (ridge.sides[0] != ridge.sides[1]) {
-          const Vec3 inward = 0.5 * (x.col(ridge.sides[0]) + x.col(ridge.sides[1])) - x.col(ridge.ends[0]);
-          if (one.dot(other) > kFlat || inward.dot(outward) > 0.0) return;  // flat or a valley: points meet it
-        }
-        side.nodes = {ridge.ends[0], ridge.ends[1], 0};
-        side.local.normal = outward;
-        visit(side, number);
-      });
     }
+  }
+
+  /// A part of a surface, by the numbers of its corners.
+  ContactSide part_of(const Collider& own, const Surface& surface, Simplex::Kind kind,
+                      const std::array<int, 3>& corners) const {
+    ContactSide side;
+    side.on = own;
+    side.nodes = corners;
+    side.local.kind = kind;
+    if (is_rigid(own)) {
+      for (int k = 0; k < side.local.corners(); ++k) side.local.x[k] = surface.mesh->points.col(corners[k]);
+    }
+    return side;
+  }
+
+  /// Gives a side a direction of the world, which what is rigid carries with it.
+  void point_outward(ContactSide& side, const Vec3& outward) const {
+    side.local.normal = is_rigid(side.on) ? Vec3(start_.pose(side.on).R.transpose() * outward) : outward;
+  }
+
+  template <class Visit>
+  void each_point(const Collider& own, const Surface& surface, const contact::Box& where, const Visit& visit) const {
+    for (const int point : surface.mesh->used) {
+      if (where.contains(Vec3(surface.x.col(point))))
+        visit(part_of(own, surface, Simplex::Kind::point, {point, 0, 0}), point);
+    }
+  }
+
+  template <class Visit>
+  void each_ridge(const Collider& own, const Surface& surface, const contact::Box& where, const Visit& visit) const {
+    const Eigen::Matrix3Xd& x = surface.x;
+    surface.edges.each_near(where, [&](int number) {
+      const contact::Ridge& ridge = surface.mesh->ridges[number];
+      const Vec3 outward =
+          (surface.outward.points.col(ridge.ends[0]) + surface.outward.points.col(ridge.ends[1])).normalized();
+      if (ridge.sides[0] != ridge.sides[1]) {
+        const Vec3 inward = 0.5 * (x.col(ridge.sides[0]) + x.col(ridge.sides[1])) - x.col(ridge.ends[0]);
+        if (is_flat(surface, ridge) || inward.dot(outward) > 0.0) return;  // flat or a valley: points meet it
+      }
+      ContactSide side = part_of(own, surface, Simplex::Kind::segment, {ridge.ends[0], ridge.ends[1], 0});
+      point_outward(side, outward);
+      visit(side, number);
+    });
+  }
+
+  /// Whether the two triangles beside a ridge lie in one plane, but for 10 degrees.
+  static bool is_flat(const Surface& surface, const contact::Ridge& ridge) {
+    const Eigen::Matrix3Xd& x = surface.x;
+    const auto normal = [&](int third) {
+      return (x.col(ridge.ends[1]) - x.col(ridge.ends[0])).cross(x.col(third) - x.col(ridge.ends[0])).normalized();
+    };
+    // One of the two is turned the other way.
+    return -normal(ridge.sides[0]).dot(normal(ridge.sides[1])) > kFlat;
   }
 
   /// Of all of an object, and the alarm distance around.
   contact::Box around(const Collider& own) const {
     contact::Box box;
-    if (is_rigid(own)) {
+    if (const Surface* surface = surfaces_.of(own)) {
+      box = surface->faces.whole();
+    } else if (is_rigid(own)) {
       const contact::Pose pose = start_.pose(own);
       const Vec3 reach = contact::reach(shape_of(start_.model, own), pose.R.transpose());
       box = contact::Box(Vec3(pose.p - reach), Vec3(pose.p + reach));
-    } else if (own.kind == Kind::solid) {
-      box = surfaces_[own.number].faces.whole();
     } else {
       const RodModel& rod = start_.model.rods[own.number];
       for (const double s : rod.touching) {
@@ -178,21 +298,32 @@ class Search {
   }
 
   contact::Box grown(contact::Box box, double radius = 0.0) const {
-    box.min().array() -= alarm_ + radius;
-    box.max().array() += alarm_ + radius;
+    const double far = std::max(alarm_, depth_) + radius;
+    box.min().array() -= far;
+    box.max().array() += far;
     return box;
   }
+
+  /// Whether a gap is one that may close, or has just closed.
+  bool matters(double gap) const { return gap < alarm_ && gap > -depth_; }
 
   void points_and_faces(const Collider& poking, const Collider& faced, Part part) {
     if (faced.kind == Kind::rod) return;  // thin: edges meet it
     each_prong(poking, Simplex::Kind::point, around(faced), [&](const ContactSide& a, int number) {
       const Simplex point = start_.placed(a);
-      if (is_rigid(faced)) {
-        add_shape(a, point, faced, key(part, number, 0));
+      if (const Surface* surface = surfaces_.of(faced)) {
+        add_faces(a, point, faced, *surface, number, part);
       } else {
-        add_faces(a, point, faced, number, part);
+        add_shape(a, point, faced, key(part, number, 0));
       }
     });
+  }
+
+  /// Out of what a point is a corner of; zero of points of rods and of middles of what is round.
+  Vec3 outward_of(const ContactSide& point) const {
+    const Surface* surface = surfaces_.of(point.on);
+    if (surface) return surface->outward.points.col(point.nodes[0]);
+    return is_rigid(point.on) ? start_.pose(point.on).R * point.local.normal : Vec3(Vec3::Zero());
   }
 
   void add_shape(const ContactSide& a, const Simplex& point, const Collider& hard, std::uint64_t part) {
@@ -200,54 +331,54 @@ class Search {
     const Vec3 own = pose.R.transpose() * (point.x[0] - pose.p);
     ContactSide b;
     b.on = hard;
-    b.local = contact::nearest_part(shape_of(start_.model, hard), own);
+    b.local = contact::nearest_part(shape_of(start_.model, hard), own, pose.R.transpose() * outward_of(a));
     if (contact::nearest(contact::point_at(own, point.radius), b.local).gap < alarm_) add(a, b, part);
   }
 
   /// A thin point meets the nearest face. A thick one may lie in a hollow and touch many, so it meets all that it is in
   /// front of: each with its own nearest point, which may lie on an edge that others share.
-  void add_faces(const ContactSide& a, const Simplex& point, const Collider& soft, int prong, Part part) {
-    const SolidModel& solid = start_.model.solids[soft.number];
-    const bool itself = a.on == soft, thick = point.radius > 0.0;
-    ContactSide b;
-    b.on = soft;
-    b.local.kind = Simplex::Kind::triangle;
-    double nearest = alarm_;
+  void add_faces(const ContactSide& a, const Simplex& point, const Collider& faced, const Surface& surface, int prong,
+                 Part part) {
+    const contact::Mesh& mesh = *surface.mesh;
+    const Vec3 outward = outward_of(a);
+    const bool itself = a.on == faced, thick = point.radius > 0.0;
+    std::optional<ContactSide> nearest;
+    double least = INFINITY, against = INFINITY;
     bool in_front = false;
-    std::array<int, 3> nodes{};
-    contact::Vec3 outward = contact::Vec3::Zero();
     const contact::Box where = grown(contact::Box(point.x[0]), point.radius);
-    surfaces_[soft.number].faces.each_near(where, [&](int number) {
-      b.nodes = solid.surface[number];
-      if (itself && near_at_rest(solid, a.nodes[0], b.nodes)) return;
-      b.local.normal.setZero();
+    surface.faces.each_near(where, [&](int number) {
+      const std::array<int, 3>& corners = mesh.triangles[number];
+      if (itself && near_at_rest(mesh, a.nodes[0], corners)) return;
+      ContactSide b = part_of(faced, surface, Simplex::Kind::triangle, corners);
       Simplex face = start_.placed(b);
       contact::Nearest found = contact::nearest(point, face);
       // Past an edge of the surface, the two faces tell together what is outside.
-      for (std::size_t i = 0; i < 3; ++i) b.local.normal += found.b[i] * surfaces_[soft.number].outward.col(b.nodes[i]);
-      face.normal = b.local.normal;
+      face.normal = contact::outward_at(mesh, surface.outward, number, found.b);
+      point_outward(b, face.normal);
       found = contact::nearest(point, face);
-      const bool corner = std::max({found.b[0], found.b[1], found.b[2]}) >= 1.0;
+      const bool corner = std::max({found.b[0], found.b[1], found.b[2]}) > 1.0 - kSame;
       // Corners are the business of the nodes, and so is all of a fine mesh: between nodes on a ball of radius r its
       // edges e lie e^2 / 8 r deep in it.
-      if (thick && is_rigid(a.on) && (corner || longest_edge(face) < 0.5 * point.radius)) return;
-      if (std::abs(found.gap) >= alarm_) return;
+      const bool of_nodes = thick
+                                ? corner || longest_edge(face) < 0.5 * point.radius
+                                : corner && faced.kind == Kind::solid;  // those of two rigid meshes may all be corners
+      if ((is_rigid(a.on) && of_nodes) || !matters(found.gap)) return;
       const Vec3 n = (face.x[1] - face.x[0]).cross(face.x[2] - face.x[0]);
       if (thick && n.dot(point.x[0] - face.x[0]) > 0.0) {
         add(a, b, key(part, prong, number));
         in_front = true;
       }
-      if (std::abs(found.gap) >= nearest) return;
+      // Of faces that are equally near the one that looks most against the point's own outside, as at a rim.
+      const double distance = std::abs(found.gap), same = 1e-6 * longest_edge(face),
+                   facing = n.normalized().dot(outward);
+      if (distance >= least + same || (distance >= least - same && facing >= against)) return;
       // The far side of something thin, or round the corner of what the point is above.
-      if (a.on.kind == Kind::solid && n.dot(surfaces_[a.on.number].outward.col(a.nodes[0])) >= 0.0) return;
-      nearest = std::abs(found.gap);
-      nodes = b.nodes;
-      outward = b.local.normal;
+      if (!outward.isZero() && facing >= 0.0) return;
+      least = std::min(least, distance);
+      against = facing;
+      nearest = b;
     });
-    if (nearest == alarm_ || in_front) return;
-    b.nodes = nodes;
-    b.local.normal = outward;
-    add(a, b, key(part, prong, 0));
+    if (nearest && !in_front) add(a, *nearest, key(part, prong, 0));
   }
 
   static double longest_edge(const Simplex& face) {
@@ -256,9 +387,9 @@ class Search {
     return edge;
   }
 
-  /// Whether a node and a triangle of the same solid are neighbours.
-  bool near_at_rest(const SolidModel& solid, int node, const std::array<int, 3>& face) const {
-    const auto at = [&](int n) { return Vec3(solid.body.rest.col(n)); };
+  /// Whether a point and a triangle of the same surface are neighbours.
+  static bool near_at_rest(const contact::Mesh& mesh, int node, const std::array<int, 3>& face) {
+    const auto at = [&](int n) { return Vec3(mesh.points.col(n)); };
     const Simplex rest{Simplex::Kind::triangle, {at(face[0]), at(face[1]), at(face[2])}, Vec3::Zero(), 0.0};
     return std::abs(contact::nearest(contact::point_at(at(node), 0.0), rest).gap) < 0.5 * longest_edge(rest);
   }
@@ -301,18 +432,26 @@ class Search {
         // What has an outside comes second.
         const bool turned = other->placed.normal.isZero() && !one.placed.normal.isZero();
         const Edge &a = turned ? *other : one, &b = turned ? one : *other;
+        if (side_by_side(a.placed, b.placed)) continue;
         const contact::Nearest found = contact::nearest(a.placed, b.placed);
-        if (std::abs(found.gap) >= alarm_ || !within(found, a.side, b.side)) continue;
+        if (!matters(found.gap) || !within(found, a.side, b.side)) continue;
         if (found.normal.dot(b.placed.normal) < 0.0 || found.normal.dot(a.placed.normal) > 0.0) continue;
         add(a.side, b.side, key(Part::edges, one.number, other->number));
       }
     }
   }
 
+  /// Whether two thin edges are as good as parallel: the plane through both is no normal then, and their ends meet the
+  /// faces beside them.
+  static bool side_by_side(const Simplex& a, const Simplex& b) {
+    const Vec3 d = a.x[1] - a.x[0], e = b.x[1] - b.x[0];
+    return a.radius + b.radius == 0.0 && d.cross(e).squaredNorm() < 1e-4 * d.squaredNorm() * e.squaredNorm();
+  }
+
   /// Whether two edges meet between their ends: there, points do. Pieces of rods follow each other.
   static bool within(const contact::Nearest& found, const ContactSide& a, const ContactSide& b) {
     const auto inside = [](const ContactSide& side, double t) {
-      return side.on.kind == Kind::rod || (t > 0.0 && t < 1.0);
+      return side.on.kind == Kind::rod || (t > kSame && t < 1.0 - kSame);
     };
     return inside(a, found.a[1]) && inside(b, found.b[1]);
   }
@@ -327,9 +466,10 @@ class Search {
   }
 
   static constexpr double kFlat = 0.985;  ///< cosine of 10 degrees
+  static constexpr double kSame = 1e-9;   ///< part of an edge at whose ends two points are one
   const Moment& start_;
-  double alarm_;
-  const std::vector<Surface>& surfaces_;
+  double alarm_, depth_;
+  const Surfaces& surfaces_;
   std::vector<ContactState>& found_;
   int pair_ = 0;
   std::vector<contact::Meeting> meetings_;
@@ -337,9 +477,14 @@ class Search {
 
 }  // namespace
 
-void search(const Moment& start, double alarm, const std::vector<Surface>& surfaces, int number,
+void search(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
             std::vector<ContactState>& found) {
-  Search(start, alarm, surfaces, found).pair(number);
+  Search(start, alarm, depth, surfaces, found).pair(number);
+}
+
+double overlap(const Moment& now, const Surfaces& surfaces, int number) {
+  std::vector<ContactState> none;
+  return Search(now, 0.0, 0.0, surfaces, none).overlap(number);
 }
 
 }  // namespace sinew

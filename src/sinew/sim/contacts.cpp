@@ -62,11 +62,16 @@ void configure_touching(const Model& model, const std::vector<Placement>& bases,
   }
 }
 
-std::vector<Placement> frames_at_start(const StepContext& context) {
+std::vector<Placement> frames_at(const Model& model, double time) {
   std::vector<Placement> frames;
-  for (const auto& [name, frame] : context.model.scene.frames)
-    frames.push_back(frame_displacement(frame, context.start.time));
+  for (const auto& [name, frame] : model.scene.frames) frames.push_back(frame_displacement(frame, time));
   return frames;
+}
+
+std::vector<Placement> rod_bases(const Model& model, const State& state) {
+  std::vector<Placement> bases;
+  for (std::size_t i = 0; i < model.rods.size(); ++i) bases.push_back(rod_base(model, state, static_cast<int>(i)));
+  return bases;
 }
 
 /// Tangents that turn little while the normal turns little.
@@ -154,7 +159,7 @@ double alarm_distance(const StepContext& context) {
     const double far = contact::reach(context.model.bodies[i].shape, Eigen::Matrix3d::Identity()).norm();
     fastest = std::max(fastest, own.v.norm() + own.w.norm() * far);
   }
-  const std::vector<Placement> frames = frames_at_start(context);
+  const std::vector<Placement> frames = frames_at(context.model, context.start.time);
   for (const ObstacleModel& obstacle : context.model.obstacles) {
     const Placement moved = carried(context, frames, obstacle.frame);
     const Vec3& middle = context.model.middle;
@@ -166,21 +171,15 @@ double alarm_distance(const StepContext& context) {
 
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room) {
   if (context.model.pairs.empty()) return;
-  std::vector<Placement> bases;
-  for (std::size_t i = 0; i < context.model.rods.size(); ++i)
-    bases.push_back(rod_base(context.model, context.start, static_cast<int>(i)));
-  configure_touching(context.model, bases, context.start, room.start);
-  const std::vector<Placement> frames = frames_at_start(context);
+  configure_touching(context.model, rod_bases(context.model, context.start), context.start, room.start);
+  const std::vector<Placement> frames = frames_at(context.model, context.start.time);
   const Moment start{context.model, context.start, frames, room.start};
   std::vector<ContactState> found;
-  room.surfaces.resize(context.model.solids.size());
-  for (std::size_t i = 0; i < room.surfaces.size(); ++i) {
-    if (in_a_pair(context.model, {Kind::solid, static_cast<int>(i)}))
-      fit(context.model.solids[i], context.start.solids[i].x, room.surfaces[i]);
-  }
+  room.surfaces.fit(start);
   const double alarm = alarm_distance(context);
+  const double depth = 2.0 * context.gravity.norm() * context.h * context.h + 2e-3 * context.model.size;
   for (std::size_t i = 0; i < context.model.pairs.size(); ++i)
-    search(start, alarm, room.surfaces, static_cast<int>(i), found);
+    search(start, alarm, depth, room.surfaces, static_cast<int>(i), found);
   std::stable_sort(found.begin(), found.end(), earlier);
   // What was there keeps its force.
   auto old = context.start.contacts.begin();
@@ -204,6 +203,22 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   }
 }
 
+std::vector<Overlap> overlaps(const Model& model, const State& start) {
+  std::vector<Overlap> found;
+  if (model.pairs.empty()) return found;
+  std::vector<rod::Configuration> rods;
+  configure_touching(model, rod_bases(model, start), start, rods);
+  const std::vector<Placement> frames = frames_at(model, start.time);
+  const Moment now{model, start, frames, rods};
+  Surfaces surfaces;
+  surfaces.fit(now);
+  for (std::size_t i = 0; i < model.pairs.size(); ++i) {
+    const double depth = overlap(now, surfaces, static_cast<int>(i));
+    if (depth > 1e-6 * model.size) found.push_back({static_cast<int>(i), depth});
+  }
+  return found;
+}
+
 void finish_contacts(const ContactRoom& room, State& next) {
   for (std::size_t i = 0; i < next.contacts.size(); ++i) {
     ContactState& own = next.contacts[i];
@@ -225,7 +240,7 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
   room.touches.resize(iterate.contacts.size());
   if (iterate.contacts.empty()) return;
   configure_touching(context.model, context.bases, iterate, room.now);
-  const std::vector<Placement> frames = frames_at_start(context);
+  const std::vector<Placement> frames = frames_at(context.model, context.start.time);
   const Moment start{context.model, context.start, frames, room.start};
   const Moment now{context.model, iterate, context.displacement, room.now};
   for (std::size_t i = 0; i < room.touches.size(); ++i) {

@@ -26,7 +26,7 @@ struct Touch {
 /// What contacts of a step are evaluated with; memory of the last time.
 struct ContactRoom {
   std::vector<rod::Configuration> start, now;  ///< of rods that touch something
-  std::vector<Surface> surfaces;               ///< of each solid, at the start, if it is in a pair
+  Surfaces surfaces;                           ///< at the start
   std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
   std::vector<Touch> touches;
   /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
@@ -52,6 +52,14 @@ void each_side(const ContactState& contact, const Touch& touch, const Visit& vis
   visit(contact.a, touch.nearest.a, touch.point_a, 1.0);
   visit(contact.b, touch.nearest.b, touch.point_b, -1.0);
 }
+
+/// A pair whose objects overlap.
+struct Overlap {
+  int pair = 0;        ///< of the model's
+  double depth = 0.0;  ///< [m] > 0, of the deepest place
+};
+/// All pairs that overlap by more than a millionth of the model's size at the start of a run.
+std::vector<Overlap> overlaps(const Model& model, const State& start);
 
 /// How far parts may be apart at the start of a step to be looked at [m].
 double alarm_distance(const StepContext& context);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/contacts.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/solid_matrix.hpp"
 
@@ -249,8 +250,8 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
                                  " m off its path, which its sections and strains cannot follow");
     }
   }
-  for (const auto& [name, body] : scene.bodies) build_body(model, name, body);
-  for (const auto& [name, obstacle] : scene.obstacles) build_obstacle(model, name, obstacle);
+  for (const auto& [name, body] : scene.bodies) build_body(model, name, body, read_mesh);
+  for (const auto& [name, obstacle] : scene.obstacles) build_obstacle(model, name, obstacle, read_mesh);
   build_pairs(model);
   for (const auto& [name, actuator] : scene.actuators) build_actuator(model, name, actuator);
   for (const auto& [name, load] : scene.loads) build_load(model, name, load);
@@ -269,6 +270,14 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   const State start = initial_state(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();
+  for (const Overlap& own : overlaps(model, start)) {
+    PairModel& pair = model.pairs[own.pair];
+    pair.depth = 1.2 * own.depth;
+    model.warnings.push_back("contact: " + name_of(model, pair.a) + " and " + name_of(model, pair.b) + " overlap by " +
+                             text(1e3 * own.depth) +
+                             " mm at the start and are moved apart slowly; move one of them, or write `off: true` for "
+                             "the pair");
+  }
   return model;
 }
 

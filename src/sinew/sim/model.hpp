@@ -41,21 +41,13 @@ struct BlockPlace {
   std::uint32_t turned : 1 = 0;
 };
 
-/// Two nodes of a surface's edge, and the third one of each of the triangles that meet in it (the same one where there
-/// is only one triangle).
-struct Ridge {
-  std::array<int, 2> ends, sides;
-};
-
 /// A volume, where it is attached, and how its matrix is factored.
 struct SolidModel {
   std::string name;
   solid::Body body;
   PlacedMesh mesh;
   std::vector<solid::Triangle> surface;
-  std::vector<int> surface_nodes;     ///< that may touch something, ascending
-  std::vector<Ridge> ridges;          ///< likewise: the edges of the surface, where two triangles meet
-  contact::Tree faces, edges;         ///< around the triangles of its surface and its ridges, at rest
+  contact::Mesh skin;                 ///< the same, at rest, if something may touch it
   int frame = -1;                     ///< number of its frame, -1: the ground
   std::vector<int> carrier;           ///< per node with held coordinates: number of the frame that holds it
   Eigen::Matrix3Xd springs;           ///< [N/m] per node and axis
@@ -99,7 +91,8 @@ struct GeometricCableModel {
 struct BodyModel {
   std::string name;
   rigid::Body body;
-  contact::Shape shape;  ///< in axes at the centre of mass
+  contact::Shape shape;                  ///< in axes at the centre of mass
+  std::vector<contact::Simplex> prongs;  ///< of the shape
   rigid::Motion start;
   int unknown = 0;  ///< first of six in z: displacement and turn in the world's axes
 };
@@ -108,7 +101,8 @@ struct BodyModel {
 struct ObstacleModel {
   std::string name;
   contact::Shape shape;
-  Placement pose;  ///< in the world at t = 0
+  std::vector<contact::Simplex> prongs;  ///< of the shape
+  Placement pose;                        ///< in the world at t = 0
   int frame = -1;
 };
 
@@ -124,6 +118,7 @@ struct Collider {
 struct PairModel {
   Collider a, b;
   double friction = 0.0, restitution = 0.0;
+  double depth = 0.0;  ///< [m] up to which they are met where they overlap, if they do at the start; 0: little
 };
 
 /// A rod or a cable by its number among its kind.

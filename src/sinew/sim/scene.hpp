@@ -352,7 +352,14 @@ struct CapsuleShape {
   double length = 0.0;  ///< [m] > 0, of the segment, without the round ends
 };
 
-using BodyShape = std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape>;
+/// A closed surface of triangles, from a file. Its axes are the file's.
+struct MeshShape {
+  std::filesystem::path file;  ///< .stl or .obj, or a volume mesh, whose boundary is meant
+  double scale = 1.0;          ///< what its coordinates are multiplied by to be in m
+  bool hull = false;           ///< the smallest convex body around it instead
+};
+
+using BodyShape = std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape, MeshShape>;
 
 /// A half-space, whose surface goes through a point. Of obstacles only.
 struct PlaneShape {
@@ -370,7 +377,7 @@ struct RigidBody {
 
 /// Something rigid that stands still, or is carried by a frame.
 struct Obstacle {
-  std::variant<PlaneShape, BoxShape, SphereShape, CylinderShape, CapsuleShape> shape;
+  std::variant<PlaneShape, BoxShape, SphereShape, CylinderShape, CapsuleShape, MeshShape> shape;
   Pose pose;
   std::optional<std::string> frame;
 };

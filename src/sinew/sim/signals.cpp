@@ -85,12 +85,13 @@ SignalGroup solid_group(const OutputModel& output) {
 }
 
 /// Force [N] of all that touches a body.
-Vec3 touching_force(const State& state, int body) {
+Vec3 touching_force(const Model& model, const State& state, int body) {
   const Collider own{Collider::Kind::body, body};
   Vec3 sum = Vec3::Zero();
   for (const ContactState& contact : state.contacts) {
-    if (contact.a.on == own) sum += contact.force;
-    if (contact.b.on == own) sum -= contact.force;
+    const PairModel& pair = model.pairs[contact.pair];
+    if (pair.b == own) sum += force_on_second(contact);
+    if (pair.a == own) sum -= force_on_second(contact);
   }
   return sum;
 }
@@ -98,27 +99,26 @@ Vec3 touching_force(const State& state, int body) {
 SignalGroup body_group(const OutputModel& output) {
   const int body = output.body;
   const bool force = output.quantity == Quantity::force;
-  return {named(output.name, {"x", "y", "z"}), [=](const Model&, const State& state) {
-            return numbers(force ? touching_force(state, body) : state.bodies[body].p);
+  return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
+            return numbers(force ? touching_force(model, state, body) : state.bodies[body].p);
           }};
 }
 
 SignalGroup pair_group(const OutputModel& output) {
   const int pair = output.pair;
-  const double sign = output.turned ? -1.0 : 1.0;
+  const double sign = output.turned ? 1.0 : -1.0;
   return {named(output.name, {"x", "y", "z", "normal", "contacts", "sliding", "gap"}),
           [=](const Model& model, const State& state) {
             Vec3 sum = Vec3::Zero();
             double normal = 0.0, contacts = 0.0, sliding = 0.0, gap = INFINITY;
             for (const ContactState& own : state.contacts) {
               if (own.pair != pair) continue;
-              // Sides are in the order in which their parts met, not in that of the pair.
-              sum += (own.a.on == model.pairs[pair].a ? sign : -sign) * own.force;
+              sum += sign * force_on_second(own);
               const double pressed = own.force.dot(own.normal);
               normal += pressed;
               contacts += 1.0;
               gap = std::min(gap, own.gap);
-              sliding += slides(own, model.pairs[pair].friction) ? 1.0 : 0.0;
+              sliding += slides(model, own) ? 1.0 : 0.0;
             }
             return std::vector<double>{
                 sum.x(), sum.y(), sum.z(), normal, contacts, sliding, contacts > 0.0 ? gap : 0.0};

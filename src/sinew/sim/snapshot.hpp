@@ -48,7 +48,8 @@ struct BodySnapshot {
   bool ground = false;  ///< a half-space, of which this is a piece
 };
 
-/// A force [N] at a point [m] where two objects touch, on the one that `normal` points to.
+/// A force [N] at a point [m] where two objects touch, on the one that `normal` points to: on bodies from obstacles, on
+/// solids and rods from both.
 struct ForceSnapshot {
   Eigen::Vector3d position, force, normal;
 };

@@ -61,10 +61,13 @@ State initial_state(const Model& model) {
   return state;
 }
 
-bool slides(const ContactState& contact, double friction) {
+Vec3 force_on_second(const ContactState& contact) { return contact.on_second ? contact.force : Vec3(-contact.force); }
+
+bool slides(const Model& model, const ContactState& contact) {
   const double pressed = contact.force.dot(contact.normal);
   const Vec3 along = contact.force - pressed * contact.normal;
-  return contact.slip > 0.0 && along.norm() >= (1.0 - 1e-6) * friction * pressed;
+  return contact.slip > 1e-8 * model.size &&
+         along.norm() >= (1.0 - 1e-6) * model.pairs[contact.pair].friction * pressed;
 }
 
 namespace {
@@ -121,7 +124,7 @@ void each_number_of(Contact& contact, const Visit& visit) {
   visit(contact.gap);
   visit(contact.slip);
 }
-constexpr std::size_t kContactNumbers = 13;
+constexpr std::size_t kContactNumbers = 14;
 
 }  // namespace
 
@@ -140,6 +143,7 @@ std::vector<double> pack(const State& state) {
   for (const ContactState& contact : state.contacts) {
     numbers.push_back(contact.pair);
     numbers.push_back(static_cast<double>(contact.part));
+    numbers.push_back(contact.on_second ? 1.0 : 0.0);
     each_number_of(contact, [&numbers](double value) { numbers.push_back(value); });
   }
   return numbers;
@@ -163,6 +167,7 @@ State unpack(const Model& model, const std::vector<double>& numbers) {
       throw std::invalid_argument("the recorded contacts do not belong to this model");
     contact.pair = static_cast<int>(pair);
     contact.part = static_cast<std::uint64_t>(part);
+    contact.on_second = numbers[at++] != 0.0;
     each_number_of(contact, [&](double& value) { value = numbers[at++]; });
   }
   return state;

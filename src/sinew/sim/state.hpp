@@ -31,7 +31,7 @@ struct CableState {
 struct ContactSide {
   Collider on;
   contact::Simplex local;             ///< of a rigid body in its axes, of an obstacle in the world at t = 0; its kind
-  std::array<int, 3> nodes{};         ///< or its corners: of a solid
+  std::array<int, 3> nodes{};         ///< or its corners: of a solid; also of a rigid mesh
   std::array<double, 3> abscissae{};  ///< [m] of a rod
 };
 
@@ -40,14 +40,17 @@ struct ContactState {
   int pair = 0;               ///< of the model's
   std::uint64_t part = 0;     ///< of the two, by which a contact is known again in the next step
   ContactSide a, b;           ///< of a contact in the making; those of a finished step are found again
+  bool on_second = false;     ///< a is of the pair's second object
   Vec3 force = Vec3::Zero();  ///< [N] on a; b feels the opposite
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< [m] on b; from b to a
   double gap = 0.0;                                  ///< [m]
   double slip = 0.0;                                 ///< [m] in the step
 };
 
-/// Whether it slides, against all the friction there is.
-bool slides(const ContactState& contact, double friction);
+/// [N] on the second object of its pair.
+Vec3 force_on_second(const ContactState& contact);
+/// Whether it slides: against all the friction there is, and by more than what a step leaves undecided.
+bool slides(const Model& model, const ContactState& contact);
 
 struct PointState {
   double s = 0.0;         ///< [m] abscissa
@@ -97,7 +100,7 @@ bool finite(const State& state);
 
 /// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
 /// refused.
-inline constexpr std::uint64_t kStateLayout = 4;
+inline constexpr std::uint64_t kStateLayout = 5;
 /// The state as plain numbers in a fixed order, contacts at the end, and back. unpack throws std::invalid_argument if
 /// their number, or a contact's pair, is not this model's.
 std::vector<double> pack(const State& state);

@@ -47,6 +47,7 @@ using Triangle = std::array<int, 3>;  ///< node numbers, counter-clockwise seen 
 struct Mesh {
   Eigen::Matrix3Xd nodes;  ///< 3 x n, one column a node
   std::vector<Cell> cells;
+  std::vector<Triangle> faces;  ///< of a file that is a surface and has no cells
   std::map<std::string, Group> groups;
   std::map<std::string, int> ignored;  ///< other cells of the file: kind ("wedge", "line", ...) and how many
 };
