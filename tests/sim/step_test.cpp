@@ -383,9 +383,10 @@ TEST(Status, force_beyond_all_numbers_stops_without_nan) {
 
 TEST(Status, every_status_has_a_name_and_a_meaning) {
   for (Status status : {Status::rest, Status::converged, Status::linearized, Status::max_iterations, Status::singular,
-                        Status::diverged, Status::rod_exhausted}) {
+                        Status::diverged, Status::inverted, Status::path_lost, Status::rod_exhausted}) {
     EXPECT_NE(to_string(status), "unknown");
     EXPECT_FALSE(explain(status).empty());
+    EXPECT_EQ(accepted(to_string(status)), accepted(status)) << to_string(status);
   }
 }
 

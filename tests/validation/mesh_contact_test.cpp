@@ -102,6 +102,20 @@ TEST(MeshContact, ItsCentreOfMassAndInertiaAreThoseOfWhatItEncloses) {
   }
 }
 
+TEST(MeshContact, WarnsOfMillimetres) {
+  for (const double scale : {1.0, 0.001}) {
+    Scene scene = on_floor(0.005, 0.1, 0.2);
+    RigidBody body;
+    body.shape = MeshShape{.file = "part.stl", .scale = scale, .hull = false};
+    body.mass = 1.0;
+    scene.bodies.emplace_back("brick", body);
+    const Model model = build(scene, reader(box_surface(Vec3(20, 30, 40), Vec3(0, 0, 20))));
+    ASSERT_EQ(model.warnings.size(), scale == 1.0 ? 1U : 0U);
+    if (scale == 1.0)
+      EXPECT_EQ(model.warnings[0].find("bodies.brick.mesh.scale: the mesh is 53.8"), 0U) << model.warnings[0];
+  }
+}
+
 /// A ring hangs on a bar through it: its hull would be pushed off.
 TEST(MeshContact, ARingHangsOnABar) {
   Scene scene = on_floor(0.002, 1.0, 0.3);

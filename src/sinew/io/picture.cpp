@@ -10,6 +10,7 @@
 #include "sinew/io/picture_raster.hpp"
 #include "sinew/io/picture_shapes.hpp"
 #include "sinew/io/readable.hpp"
+#include "sinew/sim/status.hpp"
 
 namespace sinew::io {
 namespace {
@@ -153,7 +154,7 @@ void draw_header(const Page& page, const Snapshot& end, const PictureOptions& op
   std::replace(status.begin(), status.end(), '_', ' ');
   if (status.empty()) return;
   const double x = 60 + page.text_width(time, plain) + 20;
-  const bool good = end.status == "converged";
+  const bool good = accepted(end.status);
   page.disc({x + 6, 97}, 6, good ? rgb(0x1b8a5a) : kWarning);
   const TextStyle style{.size = 20, .color = good ? kGrey : kWarning, .bold = !good};
   page.text(x + 22, 104, page.fitted(status, style, 1000), style);

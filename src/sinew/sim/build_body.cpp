@@ -153,6 +153,13 @@ struct MakeShape {
   }
 };
 
+template <class Given>
+void warn_of_scale(Model& model, const Given& given, const contact::Shape& made, const std::string& path) {
+  if (const MeshShape* mesh = std::get_if<MeshShape>(&given))
+    building::warn_of_scale(2.0 * contact::reach(made, rod::Mat3::Identity()).norm(), mesh->scale, path + ".mesh.scale",
+                            model.warnings);
+}
+
 std::vector<Collider> colliders(const Model& model) {
   std::vector<Collider> all;
   const auto add = [&all](Kind kind, std::size_t count) {
@@ -198,6 +205,7 @@ void build_body(Model& model, const std::string& name, const RigidBody& body, co
   MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, body.shape);
   own.shape = std::move(made.shape);
   own.prongs = contact::prongs(own.shape);
+  warn_of_scale(model, body.shape, own.shape, path);
   const contact::Bulk bulk = contact::bulk(own.shape);
   if (body.mass.has_value() == body.density.has_value())
     reject(path, "", "needs exactly one of mass and density", "give `mass: 30 g` or `density: 1200 kg/m^3`");
@@ -219,6 +227,7 @@ void build_obstacle(Model& model, const std::string& name, const Obstacle& obsta
   MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, obstacle.shape);
   own.shape = std::move(made.shape);
   own.prongs = contact::prongs(own.shape);
+  warn_of_scale(model, obstacle.shape, own.shape, path);
   own.frame = find_frame(model.scene, obstacle.frame, path);
   own.pose = compose(stand(model.scene, own.frame, obstacle.pose), {rod::Mat3::Identity(), made.middle});
   if (const PlaneShape* plane = std::get_if<PlaneShape>(&obstacle.shape)) {

@@ -132,6 +132,12 @@ solid::Mesh read_named(const Scene& scene, const MeshReader& read_mesh, const st
   }
 }
 
+void warn_of_scale(double size, double scale, const std::string& path, std::vector<std::string>& warnings) {
+  if (scale == 1.0 && size > 5.0)
+    warnings.push_back(path + ": the mesh is " + text(size) +
+                       " m large; write `scale: 0.001` if its file is in millimetres");
+}
+
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
                        std::vector<std::string>& warnings) {
   const std::string path = "solids." + name;
@@ -158,6 +164,7 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
     reject(path + ".scale", text(solid.scale), "makes the body " + text(model.mesh.diagonal) + " m large",
            "give the scale that turns mesh coordinates into metres, 0.001 for millimetres; check the pose");
   }
+  warn_of_scale(model.mesh.diagonal, solid.scale, path + ".scale", warnings);
   model.body.rest = world;  // for regions
   model.body.cells = mesh.cells;
 

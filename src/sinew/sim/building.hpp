@@ -64,6 +64,9 @@ Eigen::VectorXd shares(const SolidModel& solid, const Selection& selection, Spre
 solid::Mesh read_named(const Scene& scene, const MeshReader& read_mesh, const std::filesystem::path& file,
                        const std::string& path);
 
+/// Warns of a mesh so large [m] that its file is likely to be in millimetres.
+void warn_of_scale(double size, double scale, const std::string& path, std::vector<std::string>& warnings);
+
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
                        std::vector<std::string>& warnings);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);

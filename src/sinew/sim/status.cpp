@@ -51,10 +51,17 @@ std::string_view explain(Status status) {
       return "The path of equilibria turned back for good: there is no equilibrium under the full load, or only one "
              "that a jump leads to. Reduce the load or the motion; the recorded states show how far it went.";
     case Status::rod_exhausted:
-      return "The base end of a rod reached a sliding point. Let the rod start further outside the body, or pull less "
-             "the other way.";
+      return "The base end of a rod reached a sliding point. Let the rod start further outside the body, or push it in "
+             "less.";
   }
   return "";
+}
+
+bool accepted(std::string_view status) {
+  for (const Status own : {Status::rest, Status::converged, Status::linearized}) {
+    if (status == to_string(own)) return true;
+  }
+  return false;
 }
 
 }  // namespace sinew

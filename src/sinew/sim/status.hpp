@@ -14,7 +14,7 @@ enum class Status {
   diverged,        ///< numbers grew beyond what can be represented
   inverted,        ///< an element turned inside out, where its law ends
   path_lost,       ///< statics: the path of equilibria does not lead to the full load
-  rod_exhausted,   ///< the base end of a rod was drawn past a sliding point
+  rod_exhausted,   ///< the base end of a rod was pushed in past a sliding point
 };
 
 constexpr bool accepted(Status status) {
@@ -22,6 +22,8 @@ constexpr bool accepted(Status status) {
 }
 
 std::string_view to_string(Status status);
+/// The same of its name.
+bool accepted(std::string_view status);
 
 /// What the status means and what to try, one sentence each, for people.
 std::string_view explain(Status status);

@@ -71,7 +71,7 @@ struct StepReport {
   int newton = 0;          ///< linearisations made
   int halvings = 0;        ///< of the scene's step until it could be made
   double residual = 0.0;   ///< largest unbalanced force over the largest force that acts anywhere
-  double violation = 0.0;  ///< [m] largest distance of a sliding point from its rod, or of a tip from its anchor
+  double violation = 0.0;  ///< [m] largest of all constraints: sliding points, ties, glue, motors, lengths of cables
   bool rotated = false;    ///< a definite tangent stood in for the exact one somewhere
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
   bool redundant = false;  ///< constraint rows depended on each other

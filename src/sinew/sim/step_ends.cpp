@@ -173,7 +173,7 @@ void finish(const StepContext& context, State& next, rod::Configuration& shape) 
 
 namespace {
 
-/// A rod may be drawn past the point it enters by this fraction of its length (the motor's guide holds it straight
+/// A rod may be pushed in past the point it enters by this fraction of its length (the motor's guide holds it straight
 /// there).
 constexpr double kGuide = 0.01;
 

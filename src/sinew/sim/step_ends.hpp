@@ -25,7 +25,7 @@ void write_forces(const Linearization& here, State& next);
 /// A tie about an axis whose rows hold, but half a turn off: the step was too long for it.
 bool turned_over(const StepContext& context, const State& state);
 
-/// The first rod that has been drawn past a sliding point, if any.
+/// The first rod whose base end has been pushed in past a sliding point, if any.
 const RodModel* exhausted(const Model& model, const State& state);
 
 /// Names a cell that has turned inside out where its law ends, and where it is; empty if there is none.

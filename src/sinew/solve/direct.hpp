@@ -54,7 +54,8 @@ struct ChainPart {
   std::vector<int> whole_at;
 };
 
-/// Unknowns: z (coordinates of bases and cables, abscissae), multipliers lambda (forces) and the strains of all chains.
+/// Unknowns: z (coordinates of bases, cables and rigid bodies, abscissae, what ties follow), multipliers lambda
+/// (forces) and the strains of all chains.
 ///     B dz + G^T dlambda + (chains) = -r        equilibrium
 ///     G dz - W dlambda   + (chains) =  c        constraints: c + H dx = G dz + ..., with volumes moving by
 ///                                               dx = dx_free + A_x^-1 H^T dlambda
