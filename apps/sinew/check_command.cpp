@@ -148,6 +148,10 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
 
 namespace {
 
+void suggest_scale(double diagonal) {
+  if (diagonal > 10.0) fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
+}
+
 int describe_surface(const std::filesystem::path& path, const solid::Mesh& mesh) {
   const contact::Mesh surface = contact::make_mesh(mesh.nodes, mesh.faces);
   const Vec3 lower = mesh.nodes.rowwise().minCoeff(), upper = mesh.nodes.rowwise().maxCoeff();
@@ -164,8 +168,7 @@ int describe_surface(const std::filesystem::path& path, const solid::Mesh& mesh)
     const double volume = contact::bulk(surface).volume;
     fmt::print("  closed, volume {:.6g}{}\n", volume, volume < 0.0 ? ": it is inside out" : "");
   }
-  if ((upper - lower).norm() > 10.0)
-    fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
+  suggest_scale((upper - lower).norm());
   return kDone;
 }
 
@@ -196,7 +199,7 @@ int describe_mesh(const std::filesystem::path& path) {
   if (const auto pair = solid::mismatched_edges(mesh.cells))
     fmt::print("  cells {} and {} have different nodes in the middle of an edge: a scene refuses this mesh\n",
                pair->front(), pair->back());
-  if (s.diagonal > 10.0) fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
+  suggest_scale(s.diagonal);
   return kDone;
 }
 

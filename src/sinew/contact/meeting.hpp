@@ -24,8 +24,8 @@ struct Meeting {
 
 /// Adds all that may touch where the shapes come nearer than `alarm` [m]. Two polyhedra meet along the axis that
 /// separates them most: as corners of one clipped to a face of the other, or as two edges. Cylinders count as prisms
-/// of 48 sides there, and are round to all else. Throws std::invalid_argument for a
-/// mesh, which is met part by part (sim/contact_search).
+/// of 48 sides there, and are round to all else. Throws std::invalid_argument for a mesh, which is met part by part
+/// (sim/contact_search).
 void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double alarm,
           std::vector<Meeting>& found);
 

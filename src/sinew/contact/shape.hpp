@@ -36,7 +36,7 @@ struct Convex {
   Polyhedron surface;
 };
 
-/// Any closed surface. It is met as surfaces that deform are, part by part (sim/contact_search).
+/// A mesh is any closed surface, and met as surfaces that deform are, part by part (sim/contact_search).
 using Shape = std::variant<HalfSpace, Ball, Capsule, Cylinder, Convex, Mesh>;
 
 /// The part of a shape's surface that is nearest to p: a point, a segment or the plane of a face, with its thickness.

@@ -48,44 +48,35 @@ Triangles read_triangles(const Scene& scene, const MeshReader& read_mesh, const 
   return own;
 }
 
-/// A part of a surface whose triangles look inward though it is no cavity of another part; -1 if there is none. Parts
-/// are numbered by their first triangle.
-int inside_out(const contact::Mesh& mesh) {
-  std::vector<int> part(mesh.triangles.size(), -1);
+/// Whether the triangles of a part of a surface look inward though it is no cavity of another part.
+bool has_part_inside_out(const contact::Mesh& mesh) {
+  std::vector<int> part(mesh.triangles.size(), -1);  // by its first triangle
   for (std::size_t first = 0; first < part.size(); ++first) {
     if (part[first] >= 0) continue;
     std::vector<int> waiting{static_cast<int>(first)};
-    std::vector<solid::Triangle> own;
     while (!waiting.empty()) {
       const int at = waiting.back();
       waiting.pop_back();
       if (part[at] >= 0) continue;
       part[at] = static_cast<int>(first);
-      own.push_back(mesh.triangles[at]);
       for (const int other : mesh.beside[at]) {
         if (other >= 0) waiting.push_back(other);
       }
     }
-    const contact::Mesh alone = contact::make_mesh(mesh.points, own);
-    if (contact::bulk(alone).volume > 0.0) continue;
+    std::vector<solid::Triangle> own, others;
+    for (std::size_t t = 0; t < part.size(); ++t)
+      (part[t] == static_cast<int>(first) ? own : others).push_back(mesh.triangles[t]);
+    if (contact::bulk(contact::make_mesh(mesh.points, own)).volume > 0.0) continue;
     // A cavity's points are in what the other parts enclose.
-    std::vector<solid::Triangle> others;
-    for (const solid::Triangle& t : mesh.triangles) {
-      if (std::find(own.begin(), own.end(), t) == own.end()) others.push_back(t);
-    }
     const contact::Mesh rest = contact::make_mesh(mesh.points, others);
-    if (!contact::inside(rest, rest.points, rest.faces, mesh.points.col(own[0][0]))) return static_cast<int>(first);
+    if (!contact::inside(rest, rest.points, rest.faces, mesh.points.col(own[0][0]))) return true;
   }
-  return -1;
+  return false;
 }
 
 contact::Shape shape_of(const Triangles& own, bool hull) {
   if (!hull) return contact::make_mesh(own.points, own.triangles);
-  std::vector<Vec3> corners;
-  for (const solid::Triangle& triangle : own.triangles) {
-    for (const int corner : triangle) corners.emplace_back(own.points.col(corner));
-  }
-  return contact::Convex{contact::hull(corners)};
+  return contact::Convex{contact::hull({own.points.colwise().begin(), own.points.colwise().end()})};
 }
 
 /// A shape in axes at its centre of mass, and where these are in those of the scene.
@@ -125,9 +116,10 @@ struct MakeShape {
   MadeShape operator()(const MeshShape& mesh) const {
     const std::string own_path = path + ".mesh", file = mesh.file.string();
     Triangles own = read_triangles(scene, read_mesh, mesh, own_path);
-    const Vec3 extent = own.points.rowwise().maxCoeff() - own.points.rowwise().minCoeff();
-    if (!(extent.maxCoeff() > kSmallest && extent.maxCoeff() < kLargest))
-      reject(own_path + ".scale", text(mesh.scale), "makes the body " + text(extent.maxCoeff()) + " m large",
+    const Vec3 lower = own.points.rowwise().minCoeff(), upper = own.points.rowwise().maxCoeff();
+    const double extent = (upper - lower).maxCoeff();
+    if (!(extent > kSmallest && extent < kLargest))
+      reject(own_path + ".scale", text(mesh.scale), "makes the body " + text(extent) + " m large",
              "give the scale that turns mesh coordinates into metres, 0.001 for millimetres");
     if (const int open = mesh.hull ? 0 : contact::open_edges(own.triangles); open > 0)
       reject(
@@ -135,14 +127,14 @@ struct MakeShape {
           "has " + std::to_string(open) + " edges where not exactly two triangles meet, turned the same way",
           "close the surface and turn all its triangles outward, or write `hull: true` for the convex body around it");
     try {
-      const Vec3 middle = 0.5 * (own.points.rowwise().maxCoeff() + own.points.rowwise().minCoeff());
+      const Vec3 middle = 0.5 * (lower + upper);
       own.points.colwise() -= middle;  // for the sake of its inertia's digits
       const contact::Shape made = shape_of(own, mesh.hull);
       const contact::Bulk bulk = contact::bulk(made);
       const contact::Mesh* surface = std::get_if<contact::Mesh>(&made);
-      if (!(std::abs(bulk.volume) > 1e-12 * std::pow(extent.maxCoeff(), 3)))
+      if (!(std::abs(bulk.volume) > 1e-12 * std::pow(extent, 3)))
         reject(own_path + ".file", file, "encloses no volume", "give a body that has a volume");
-      if (bulk.volume < 0.0 || (surface && inside_out(*surface) >= 0))
+      if (bulk.volume < 0.0 || (surface && has_part_inside_out(*surface)))
         reject(own_path + ".file", file, bulk.volume < 0.0 ? "is inside out" : "has a part that is inside out",
                "turn its triangles outward: counter-clockwise where one looks at them from outside");
       own.points.colwise() -= bulk.centre;
@@ -153,11 +145,16 @@ struct MakeShape {
   }
 };
 
-template <class Given>
-void warn_of_scale(Model& model, const Given& given, const contact::Shape& made, const std::string& path) {
+/// Gives a body or an obstacle its shape; returns where the shape's axes are in those of the scene [m].
+template <class Given, class Made>
+Vec3 make_shape(Model& model, const Given& given, const std::string& path, const MeshReader& read_mesh, Made& own) {
+  MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, given);
+  own.shape = std::move(made.shape);
+  own.prongs = contact::prongs(own.shape);
   if (const MeshShape* mesh = std::get_if<MeshShape>(&given))
-    building::warn_of_scale(2.0 * contact::reach(made, rod::Mat3::Identity()).norm(), mesh->scale, path + ".mesh.scale",
-                            model.warnings);
+    warn_of_scale(2.0 * contact::reach(own.shape, rod::Mat3::Identity()).norm(), mesh->scale, path + ".mesh.scale",
+                  model.warnings);
+  return made.middle;
 }
 
 std::vector<Collider> colliders(const Model& model) {
@@ -202,10 +199,7 @@ void build_body(Model& model, const std::string& name, const RigidBody& body, co
   const std::string path = "bodies." + name;
   BodyModel own;
   own.name = name;
-  MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, body.shape);
-  own.shape = std::move(made.shape);
-  own.prongs = contact::prongs(own.shape);
-  warn_of_scale(model, body.shape, own.shape, path);
+  const Vec3 middle = make_shape(model, body.shape, path, read_mesh, own);
   const contact::Bulk bulk = contact::bulk(own.shape);
   if (body.mass.has_value() == body.density.has_value())
     reject(path, "", "needs exactly one of mass and density", "give `mass: 30 g` or `density: 1200 kg/m^3`");
@@ -216,7 +210,7 @@ void build_body(Model& model, const std::string& name, const RigidBody& body, co
   const Placement at = placement(body.pose);
   if (!at.p.allFinite() || !body.velocity.allFinite() || !body.spin.allFinite())
     reject(path, "", "pose, velocity and spin must be finite", "check its numbers");
-  own.start = {apply(at, made.middle), at.R, body.velocity, at.R.transpose() * body.spin};
+  own.start = {apply(at, middle), at.R, body.velocity, at.R.transpose() * body.spin};
   model.bodies.push_back(own);
 }
 
@@ -224,12 +218,9 @@ void build_obstacle(Model& model, const std::string& name, const Obstacle& obsta
   const std::string path = "obstacles." + name;
   ObstacleModel own;
   own.name = name;
-  MadeShape made = std::visit(MakeShape{model.scene, path, read_mesh}, obstacle.shape);
-  own.shape = std::move(made.shape);
-  own.prongs = contact::prongs(own.shape);
-  warn_of_scale(model, obstacle.shape, own.shape, path);
+  const Vec3 middle = make_shape(model, obstacle.shape, path, read_mesh, own);
   own.frame = find_frame(model.scene, obstacle.frame, path);
-  own.pose = compose(stand(model.scene, own.frame, obstacle.pose), {rod::Mat3::Identity(), made.middle});
+  own.pose = compose(stand(model.scene, own.frame, obstacle.pose), {rod::Mat3::Identity(), middle});
   if (const PlaneShape* plane = std::get_if<PlaneShape>(&obstacle.shape)) {
     const Vec3 up = plane->normal.normalized();
     own.pose = compose(own.pose, {lie::exp(lie::shortest_rotation(Vec3::UnitZ(), up)), plane->point});

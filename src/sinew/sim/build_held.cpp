@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/contact_places.hpp"
 
 namespace sinew::building {
 
@@ -111,11 +112,7 @@ void check_held(Model& model, int number) {
   const SolidModel& solid = model.solids[number];
   const FreeMotions free = free_motions(solid);
   if (free.none()) return;
-  const auto meets = [number](const PairModel& pair) {
-    const Collider own{Collider::Kind::solid, number};
-    return pair.a == own || pair.b == own;
-  };
-  if (std::any_of(model.pairs.begin(), model.pairs.end(), meets)) return;  // it is there to be touched
+  if (in_a_pair(model, {Collider::Kind::solid, number})) return;  // it is there to be touched
   const std::string path = "solids." + solid.name, motions = in_words(free, solid.mesh.diagonal);
   const bool coupled =
       std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& p) { return p.solid == number; }) ||

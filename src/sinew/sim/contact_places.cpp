@@ -1,5 +1,7 @@
 #include "sinew/sim/contact_places.hpp"
 
+#include <algorithm>
+
 #include "sinew/sim/places.hpp"
 
 namespace sinew {
@@ -35,6 +37,11 @@ contact::Simplex Moment::placed(const ContactSide& side) const {
 }
 
 bool is_rigid(const Collider& own) { return own.kind == Kind::body || own.kind == Kind::obstacle; }
+
+bool in_a_pair(const Model& model, const Collider& own) {
+  return std::any_of(model.pairs.begin(), model.pairs.end(),
+                     [&own](const PairModel& pair) { return pair.a == own || pair.b == own; });
+}
 
 const contact::Shape& shape_of(const Model& model, const Collider& own) {
   return own.kind == Kind::body ? model.bodies[own.number].shape : model.obstacles[own.number].shape;

@@ -24,6 +24,9 @@ struct Moment {
 /// Bodies and obstacles.
 bool is_rigid(const Collider& own);
 
+/// Whether it may touch anything.
+bool in_a_pair(const Model& model, const Collider& own);
+
 /// Of what is rigid.
 const contact::Shape& shape_of(const Model& model, const Collider& own);
 

@@ -83,8 +83,9 @@ class Search {
     pair_ = number;
     const PairModel& own = start_.model.pairs[number];
     depth_ = std::max(depth_, own.depth);
-    if (is_rigid(own.a) && is_rigid(own.b) && !surfaces_.of(own.a) && !surfaces_.of(own.b)) {
-      shapes(own.a, own.b);
+    if (are_shapes(own)) {
+      each_meeting(own, alarm_,
+                   [this](const ContactSide& a, const ContactSide& b, std::uint64_t key) { add(a, b, key); });
       return;
     }
     points_and_faces(own.a, own.b, Part::point_of_first);
@@ -97,26 +98,20 @@ class Search {
     const PairModel& own = start_.model.pairs[number];
     if (own.a == own.b) return 0.0;
     double deepest = 0.0;
-    if (is_rigid(own.a) && is_rigid(own.b) && !surfaces_.of(own.a) && !surfaces_.of(own.b)) {
-      meetings_.clear();
-      contact::meet(shape_of(start_.model, own.a), start_.pose(own.a), shape_of(start_.model, own.b),
-                    start_.pose(own.b), 0.0, meetings_);
-      for (const contact::Meeting& met : meetings_) {
-        ContactSide a, b;
-        a.on = met.swapped ? own.b : own.a;
-        b.on = met.swapped ? own.a : own.b;
-        a.local = met.a;
-        b.local = met.b;
+    if (are_shapes(own)) {
+      each_meeting(own, 0.0, [&](const ContactSide& a, const ContactSide& b, std::uint64_t) {
         deepest = std::max(deepest, -contact::nearest(start_.placed(a), start_.placed(b)).gap);
-      }
+      });
       return deepest;
     }
-    for (const auto& [poking, faced] : {std::pair(own.a, own.b), std::pair(own.b, own.a)}) {
-      if (faced.kind == Kind::rod) continue;
-      const Collider& in = faced;
-      each_prong(poking, Simplex::Kind::point, around(faced),
-                 [&](const ContactSide& side, int) { deepest = std::max(deepest, depth_in(in, start_.placed(side))); });
-    }
+    const auto look = [&](const Collider& poking, const Collider& faced) {
+      if (faced.kind == Kind::rod) return;
+      each_prong(poking, Simplex::Kind::point, around(faced), [&](const ContactSide& side, int) {
+        deepest = std::max(deepest, depth_in(faced, start_.placed(side)));
+      });
+    };
+    look(own.a, own.b);
+    look(own.b, own.a);
     return deepest;
   }
 
@@ -132,12 +127,15 @@ class Search {
     }
     const bool in = contact::inside(*surface->mesh, surface->x, surface->faces, point.x[0]);
     if (!in && point.radius == 0.0) return 0.0;
+    // From outside only what is within its thickness counts.
+    const contact::Box where = in ? surface->faces.whole() : grown(contact::Box(point.x[0]), point.radius);
     double least = INFINITY;
-    for (const std::array<int, 3>& t : surface->mesh->triangles) {
+    surface->faces.each_near(where, [&](int number) {
+      const std::array<int, 3>& t = surface->mesh->triangles[number];
       const std::array<Vec3, 3> x = {surface->x.col(t[0]), surface->x.col(t[1]), surface->x.col(t[2])};
       const std::array<double, 3> weights = contact::on_triangle(point.x[0], x[0], x[1], x[2]);
       least = std::min(least, (point.x[0] - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
-    }
+    });
     return std::max(0.0, point.radius + (in ? least : -least));
   }
 
@@ -174,17 +172,23 @@ class Search {
     own.b = b;
   }
 
-  void shapes(const Collider& first, const Collider& second) {
+  /// Whether neither of two has a surface of triangles or bends: contact/meeting is for these.
+  bool are_shapes(const PairModel& pair) const {
+    return is_rigid(pair.a) && is_rigid(pair.b) && !surfaces_.of(pair.a) && !surfaces_.of(pair.b);
+  }
+
+  template <class Visit>
+  void each_meeting(const PairModel& pair, double alarm, const Visit& visit) {
     meetings_.clear();
-    contact::meet(shape_of(start_.model, first), start_.pose(first), shape_of(start_.model, second),
-                  start_.pose(second), alarm_, meetings_);
+    contact::meet(shape_of(start_.model, pair.a), start_.pose(pair.a), shape_of(start_.model, pair.b),
+                  start_.pose(pair.b), alarm, meetings_);
     for (const contact::Meeting& met : meetings_) {
       ContactSide a, b;
-      a.on = met.swapped ? second : first;
-      b.on = met.swapped ? first : second;
+      a.on = met.swapped ? pair.b : pair.a;
+      b.on = met.swapped ? pair.a : pair.b;
       a.local = met.a;
       b.local = met.b;
-      add(a, b, met.key);
+      visit(a, b, met.key);
     }
   }
 

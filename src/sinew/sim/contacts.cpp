@@ -48,11 +48,6 @@ bool earlier(const ContactState& a, const ContactState& b) {
   return a.pair < b.pair || (a.pair == b.pair && a.part < b.part);
 }
 
-bool in_a_pair(const Model& model, const Collider& own) {
-  return std::any_of(model.pairs.begin(), model.pairs.end(),
-                     [&own](const PairModel& pair) { return pair.a == own || pair.b == own; });
-}
-
 void configure_touching(const Model& model, const std::vector<Placement>& bases, const State& state,
                         std::vector<rod::Configuration>& rods) {
   rods.resize(model.rods.size());
