@@ -74,16 +74,6 @@ linalg::SparseFactor::Matrix matrix_of(const Model& model, const State& state, s
   return factor.assembled();
 }
 
-/// The scene with cables that forces pull, and the point of the body that they are to move: farthest from its origin.
-Scene with_effector(Scene scene, const Vec3& tip) {
-  for (auto& [name, actuator] : scene.actuators) {
-    actuator.driven = Driven::force;
-    actuator.drive = Table{{0.0}, {0.1}};
-  }
-  test::add_effector(scene, tip);
-  return scene;
-}
-
 /// Of this many tetrahedra factors in single precision are worth a try.
 constexpr int kLarge = 5000;
 
@@ -128,15 +118,19 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
           result.single, timed(state, again, [&](State& at) { return advance(small, own, at, Evaluation::motion); }));
   }
   if (scene.rods[0].second.cable == Cable::geometric) return result;
-  const Model inverse = build(with_effector(scene, tip), meshes);
+  Scene pulled = scene;
+  test::add_target(pulled, tip, 10.0);
+  const Model inverse = build(pulled, meshes);
   Workspace own = make_workspace(inverse);
-  const State start = under_way(inverse, own);
-  const Goal goal = {{output_position(inverse, start, inverse.outputs[0]) + Vec3(0, 0.1e-3, -0.1e-3)},
-                     std::vector<double>(inverse.actuators.size(), 0.0),
-                     std::vector<double>(inverse.actuators.size(), 10.0)};
+  State start = initial_state(inverse);
+  const Command hold{std::vector<double>(inverse.actuators.size(), 0.1), {}};
+  for (int i = 0; i < 10; ++i) {
+    if (!accepted(step(inverse, own, hold, scene.time.step, start).status)) throw std::runtime_error("the run stopped");
+  }
+  const Goal goal = {output_position(inverse, start, inverse.outputs[0]) + Vec3(0, 0.1e-3, -0.1e-3)};
   for (int i = 0; i < turns; ++i) {
     result.inverse = std::min(result.inverse, timed(start, again, [&](State& at) {
-                                return inverse_step(inverse, own, goal, scene.time.step, at, Evaluation::motion).step;
+                                return inverse_step(inverse, own, goal, hold, scene.time.step, at, Evaluation::motion);
                               }));
     result.reference = std::min(result.reference, factor());
   }

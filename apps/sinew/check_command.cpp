@@ -133,7 +133,9 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
                                                         : "rotation",
                actuator.line.rod >= 0 ? model.rods[actuator.line.rod].name : model.cables[actuator.line.cable].name,
                names[static_cast<int>(actuator.driven)],
-               std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)" : "");
+               actuator.sought()                                  ? ", which is to be found"
+               : std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)"
+                                                                  : "");
   }
   print_contact(model);
   for (const std::string& warning : model.warnings) fmt::print("warning: {}\n", warning);

@@ -11,6 +11,7 @@
 #include "sinew/io/picture.hpp"
 #include "sinew/io/signals_csv.hpp"
 #include "sinew/io/vtu.hpp"
+#include "sinew/sim/inverse.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"
@@ -24,6 +25,7 @@ std::filesystem::path recording_path(const std::filesystem::path& folder) { retu
 io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report) {
   return {state.time,
           std::string(to_string(report.status)),
+          describe(model, report.aim),
           static_cast<std::uint32_t>(report.newton),
           report.residual,
           report.violation,
@@ -62,6 +64,15 @@ Json stage_json(const std::vector<StageTimes>& times, double StageTimes::*stage)
   for (const StageTimes& time : times) values.push_back(1e3 * time.*stage);
   std::sort(values.begin(), values.end());
   return {{"median_ms", values[values.size() / 2]}, {"max_ms", values.back()}};
+}
+
+/// How many steps ended how, and the last one.
+Json targets_json(const io::Recording& recording) {
+  std::map<std::string, int> counts;
+  for (const io::RecordedStep& step : recording.steps) {
+    if (!step.targets.empty()) ++counts[step.targets];
+  }
+  return {{"steps", counts}, {"end", recording.steps.empty() ? "" : recording.steps.back().targets}};
 }
 
 Json sizes_json(const Model& model) {
@@ -155,6 +166,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["time_per_step"]["threads"] = summary.threads;
     for (const Stage& stage : kStages) report["time_per_step"][stage.name] = stage_json(summary.times, stage.seconds);
   }
+  if (!loaded.model.effectors.empty()) report["summary"]["targets"] = targets_json(recording);
   if (summary.end == "unfinished" || summary.times.empty()) keep_what_no_recording_holds(path, report);
   report["steps"] = Json::array();
   for (const io::RecordedStep& step : recording.steps) {

@@ -10,6 +10,7 @@
 #include "sinew/error/input_error.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/results.hpp"
+#include "sinew/sim/effectors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
@@ -69,6 +70,21 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
   return warnings;
 }
 
+/// How near targets were come to.
+void print_targets(const Model& model, const State& state, const io::Recording& recording) {
+  std::size_t reached = 0;
+  for (const io::RecordedStep& step : recording.steps) reached += step.targets.starts_with("reached") ? 1 : 0;
+  fmt::print("Targets reached in {} of {} steps; at the end {}\n", reached, recording.steps.size() - 1,
+             recording.steps.back().targets);
+  Eigen::VectorXd errors;
+  effector_errors(model, state, goal_at(model, state.time), errors);
+  for (const EffectorModel& own : model.effectors) {
+    const Measure measure = measure_of(model, own);
+    fmt::print("  {}: {:.3g} {} off\n", model.outputs[own.output].name, error_of(own, errors) / measure.unit,
+               measure.name);
+  }
+}
+
 /// Steps from a state to the end, records them, writes the views, tells the user; returns the exit code.
 int run_and_record(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
                    io::RecordingWriter writer, const RunOptions& options) {
@@ -84,6 +100,11 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
       summary.warnings.push_back("actuators." + actuator.name +
                                  ": driven from outside, which this program cannot; it stays at 0");
     }
+  }
+  for (const Target& target : model.scene.targets) {
+    if (std::holds_alternative<External>(target.at))
+      summary.warnings.push_back("targets." + target.output +
+                                 ": set from outside, which this program cannot; it stays where it is at the start");
   }
   for (const LoadModel& load : model.loads) {
     if (std::holds_alternative<External>(load.factor))
@@ -131,6 +152,7 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   }
   const io::Recording recording = io::read_recording(recording_path(folder));
   progress.finish(fmt::format("{}, {} steps", when(model, last), recording.steps.size() - 1));
+  if (!options.quiet && !model.effectors.empty()) print_targets(model, last, recording);
   const std::vector<std::string> files = write_views(folder, loaded, recording, summary);
   if (end == RunEnd::stopped) {
     fmt::print(stderr, "Stopped at {}: {}{}\n    {}\n", when(model, last), to_string(summary.failure.status),

@@ -325,7 +325,7 @@ const std::vector<Broken> table = {
      "must be", "restitution: 0.3"},
     {"ContactWithoutMotion",
      scene("outputs:\n", "analysis: static\nobstacles: {floor: {plane: {normal: [0, 0, 1]}}}\noutputs:\n"),
-     "scene.yaml", 0, "", "contact is computed in dynamic scenes alone", "analysis: dynamic"},
+     "scene.yaml", 0, "", "in dynamic and quasi-static scenes alone", "analysis: dynamic"},
     // Actuators and outputs.
     {"TimesNotAscending", scene("times: [0 s, 1 s]", "times: [1 s, 0 s]"), "scene.yaml", 22, "times.1 = 0 s",
      "must be greater than the value before it", "ascending"},

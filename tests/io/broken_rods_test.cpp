@@ -186,7 +186,8 @@ const std::vector<Broken> cases = {
      "must be a map with the keys rod, at, from", "for example `loads: {weight:"},
     // Outputs.
     {"quantity: moment", "quantity: momet", 91, "outputs.root.quantity", "momet",
-     "must be one of position, displacement, strain, force, moment, stress, reaction", "did you mean `moment`?"},
+     "must be one of position, displacement, orientation, strain, force, moment, stress, reaction",
+     "did you mean `moment`?"},
 };
 
 TEST(BrokenRods, AreRefusedWithLineFieldRuleAndRemedy) {

@@ -264,4 +264,34 @@ outputs:
   bent: {solid: finger, point: [0, 0, 0], quantity: strain}
 )";
 
+/// What is to be found: commands that bring outputs to their targets.
+inline constexpr const char* inverse_scene = R"(# A finger, told where to go.
+analysis: quasi_static
+solids: {finger: {mesh: finger.vtk, material: {young: 600 kPa, poisson: 0.45}, mass: 75 g}}
+rods:
+  cable:
+    path: [[0, 0, 0], [100 mm, 0, 0]]
+    section: {circle: {radius: 0.5 mm}}
+    material: {young: 5 GPa, poisson: 0.5, density: 1100}
+couplings:
+  - slide: {rod: cable, solid: finger, points: 15}
+actuators:
+  pull:
+    rod: cable
+    force: inverse
+    limits: {force: [0.5 N, 20 N], displacement: {least: -1 mm, most: 30 mm}, speed: 50 mm/s, force_rate: 20 N/s}
+    preferred: 1 N
+  turn: {rod: cable, angle: inverse, limits: {torque: {most: 2 mN m}, angle: [-90 deg, 90 deg], turning_speed: 90 deg/s}}
+  other: {rod: cable, force: inverse, limits: {force: {least: 0 N, most: 5 N}}}
+  twist: {rod: cable, torque: inverse, limits: {torque: {least: 0, most: 1 N m}, angle: {least: 0, most: 1 rad}}}
+outputs:
+  tip: {solid: finger, point: [100 mm, 5 mm, 7 mm]}
+  nail: {solid: finger, point: [100 mm, 5 mm, 7 mm], quantity: orientation}
+  bend: {rod: cable, at: 50 mm, quantity: strain}
+targets:
+  tip: {at: {times: [0, 1], values: [[0.1, 0, 0], [90 mm, 0, 3 cm]]}, weights: [1, 1, 0], tolerance: 1 mm}
+  nail: {at: [0, 0, 20 deg], tolerance: 1 deg}
+  bend: {at: external, strain: bending_z}
+)";
+
 }  // namespace sinew::io

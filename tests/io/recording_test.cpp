@@ -48,6 +48,7 @@ RecordedStep step(int k) {
   RecordedStep s;
   s.time = 0.1 * k;
   s.status = k % 2 == 0 ? "converged" : "max_iterations";
+  s.targets = k % 3 == 0 ? "" : "limited: actuators.pull: force at most 3 N";
   s.newton = static_cast<std::uint32_t>(k);
   s.residual = 1e-12 / (k + 1);
   s.violation = Limits::denorm_min();
@@ -88,6 +89,7 @@ void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b
 void expect_same(const RecordedStep& a, const RecordedStep& b) {
   expect_same_bits({a.time, a.residual, a.violation}, {b.time, b.residual, b.violation});
   EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.targets, b.targets);
   EXPECT_EQ(a.newton, b.newton);
   expect_same_bits(a.signals, b.signals);
   expect_same_bits(a.state, b.state);
@@ -117,15 +119,21 @@ TEST_F(RecordingFile, has_the_documented_bytes) {
   h.program_version = "v";
   h.scene_text = h.scene_name = h.scene_folder = h.inputs_hash = "";
   h.signal_names = {};
-  RecordingWriter::create(path_, h).append(
-      {.time = -0.0, .status = "ok", .newton = 3, .residual = 1.0, .violation = 2.0, .signals = {}, .state = {0.5}});
+  RecordingWriter::create(path_, h).append({.time = -0.0,
+                                            .status = "ok",
+                                            .targets = "",
+                                            .newton = 3,
+                                            .residual = 1.0,
+                                            .violation = 2.0,
+                                            .signals = {},
+                                            .state = {0.5}});
   const std::string bytes = bytes_of(path_);
-  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 4 + 8 + 8 + 8 + 8));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x04\0\0\0\0\0\0\0", 16));
+  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 8 + 4 + 8 + 8 + 8 + 8));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x05\0\0\0\0\0\0\0", 16));
   EXPECT_EQ(bytes.substr(24, 8), std::string("\x39\0\0\0\0\0\0\0", 8));                 // payload of the header
   EXPECT_EQ(bytes.substr(32, 9), std::string("\x01\0\0\0\0\0\0\0v", 9));                // program_version
-  EXPECT_EQ(bytes.substr(bytes.size() - 54, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
-  EXPECT_EQ(bytes.substr(bytes.size() - 46, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
+  EXPECT_EQ(bytes.substr(bytes.size() - 62, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
+  EXPECT_EQ(bytes.substr(bytes.size() - 54, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
   EXPECT_EQ(bytes.substr(bytes.size() - 36, 4), std::string("\x03\0\0\0", 4));
   EXPECT_EQ(bytes.substr(bytes.size() - 8), std::string("\0\0\0\0\0\0\xe0\x3f", 8));
 }
@@ -293,10 +301,10 @@ TEST_F(RecordingFile, refuses_what_is_no_recording) {
   EXPECT_THAT(message_of("time,status,newton\n0,converged,1\n"), HasSubstr("is not a Sinew recording"));
   write(path_, 1);
   std::string newer = bytes_of(path_);
-  newer[8] = 5;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 5, and this program reads format 4"));
-  newer[8] = 3;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 3, and this program reads format 4"));
+  newer[8] = 6;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 6, and this program reads format 5"));
+  newer[8] = 4;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 4, and this program reads format 5"));
   newer[8] = 0;
   EXPECT_THAT(message_of(newer), HasSubstr("damaged"));
   EXPECT_THROW(read_recording(folder_), InputError);

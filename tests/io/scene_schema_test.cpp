@@ -50,8 +50,8 @@ void collect(const Node& node, const std::string& path, const std::string& place
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     collect(node.items[i], below(path, "*"), below(place, std::to_string(i)), used);
   }
-  const std::set<std::string> of_names = {"frames", "solids",  "rods",   "actuators",
-                                          "loads",  "outputs", "bodies", "obstacles"};
+  const std::set<std::string> of_names = {"frames",  "solids", "rods",      "actuators", "loads",
+                                          "outputs", "bodies", "obstacles", "targets"};
   const bool names = of_names.contains(path);
   if (node.kind == Node::Kind::map && !names) used.places.emplace(path, place);
   for (const Entry& entry : node.entries) {
@@ -65,7 +65,7 @@ TEST(SceneSchema, ListsExactlyTheKeysOfTheReader) {
   EXPECT_EQ(schema.at("$schema"), "https://json-schema.org/draft/2020-12/schema");
   std::set<std::string> listed, read, refused;
   collect(schema, "", listed);
-  for (const char* text : {full_scene, rods_scene, solids_scene, bodies_scene, other_scene}) {
+  for (const char* text : {full_scene, rods_scene, solids_scene, bodies_scene, other_scene, inverse_scene}) {
     parse(text);  // so every key below is one the reader knows
     Used used;
     collect(parse_document(text, "scene"), "", "", used);

@@ -35,6 +35,7 @@ class SignalsCsv : public testing::Test {
 RecordedStep row(double time, std::vector<double> signals, std::string status = "converged") {
   return {.time = time,
           .status = std::move(status),
+          .targets = {},
           .newton = 3,
           .residual = 0,
           .violation = 0,
@@ -56,6 +57,15 @@ TEST_F(SignalsCsv, has_the_stated_columns_and_digits) {
   EXPECT_EQ(text(), first + "0.01,\"odd, \"\"status\"\"\",3,1e-300,12345678\n");
   write_signals_csv(path_, recording_of({"tip.x", "pull.force"}, {steps[0]}));  // leaves nothing of the longer one
   EXPECT_EQ(text(), first);
+}
+
+TEST_F(SignalsCsv, runs_with_targets_say_what_came_of_them) {
+  std::vector<RecordedStep> steps = {row(0.0, {0.1}), row(0.01, {0.2})};
+  steps[1].targets = "limited by actuators.pull: force at most 3 N";
+  write_signals_csv(path_, recording_of({"tip.x"}, steps));
+  EXPECT_EQ(text(),
+            "time,status,newton,targets,tip.x\n0,converged,3,,0.10000000000000001\n"
+            "0.01,converged,3,limited by actuators.pull: force at most 3 N,0.20000000000000001\n");
 }
 
 TEST_F(SignalsCsv, every_double_is_read_back_exactly) {

@@ -114,15 +114,20 @@ TEST(Memory, ThreadsAskForNone) { EXPECT_EQ(pieces(block(), block_of(4000), Eval
 
 TEST(Memory, InverseStepsAskForNone) {
   Scene scene = block();
-  scene.actuators[0].second.driven = Driven::force;
-  scene.actuators[0].second.drive = Table{{0.0}, {0.5}};
   const Vec3 tip(50 * mm, 5 * mm, 5 * mm);
-  add_effector(scene, tip);
+  add_target(scene, tip, 10.0);
   const Model model = build(scene, block_of(300));
   Workspace workspace = make_workspace(model);
   State state = initial_state(model);
-  const Goal goal = {{tip - 0.1 * mm * Vec3::UnitY()}, {0.0}, {2.0}};
-  EXPECT_EQ(pieces_of([&] { return inverse_step(model, workspace, goal, scene.time.step, state).step; }), 0);
+  const Command command{{0.0}, {}};
+  Goal goal = {tip + 0.1 * mm * Vec3::UnitY()};
+  const auto pieces = [&] {
+    return pieces_of([&] { return inverse_step(model, workspace, goal, command, scene.time.step, state); });
+  };
+  EXPECT_EQ(pieces(), 0);
+  // But to list the limits that are in the way.
+  goal.at.y() -= 10 * mm;
+  EXPECT_LE(pieces(), 5);
 }
 
 TEST(Memory, SolidsOfAllKindsAskForNone) {

@@ -1,4 +1,4 @@
-// The smallest inverse problem: forces of cables that bring a point where it is wanted.
+// Commands of motors that bring points, turns and strains where they are wanted.
 #include "sinew/sim/inverse.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,8 @@
 
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/signals.hpp"
+#include "sinew/sim/statics.hpp"
 #include "support/meshes.hpp"
 #include "support/robots.hpp"
 
@@ -16,69 +18,120 @@ namespace sinew::test {
 namespace {
 
 constexpr double kNone = INFINITY;
+using Outcome = Aim::Outcome;
 
-/// A block with a cable along two of its sides, pulled by forces.
-Scene two_cables() {
+/// A block with a cable along two of its sides, pulled by forces that move its upper far corner.
+Scene two_cables(double most = kNone) {
   Scene scene = block();
   scene.time.step = 0.02;
-  scene.actuators[0].second.driven = Driven::force;
-  scene.actuators[0].second.drive = Table{{0.0}, {0.5}};
   add_cable(scene, "other", {Vec3(0, 3 * mm, 5 * mm), Vec3(50 * mm, 3 * mm, 5 * mm)}, 10, evenly(50 * mm, 10), 0.5 * mm,
             0.0);
-  scene.actuators[1].second.driven = Driven::force;
-  scene.actuators[1].second.drive = Table{{0.0}, {0.2}};
-  add_effector(scene, Vec3(50 * mm, 5 * mm, 5 * mm));
+  add_target(scene, Vec3(50 * mm, 5 * mm, 5 * mm), most);
   return scene;
+}
+
+void drive_by_displacement(Scene& scene) {
+  for (auto& [name, actuator] : scene.actuators) {
+    actuator.driven = Driven::displacement;
+    actuator.drive = Sought{};
+  }
 }
 
 class Inverse : public testing::Test {
  protected:
-  Vec3 tip(const State& at) const { return output_position(model, at, model.outputs[0]); }
-  /// The same step with forces as they are given.
-  State direct(const State& from, const std::vector<double>& forces) {
-    State next = from;
-    Workspace own = make_workspace(model);
-    EXPECT_TRUE(accepted(step(model, own, {forces, {}}, model.scene.time.step, next).status));
-    return next;
-  }
-  Goal goal_at(const Vec3& x, double most = kNone) const { return {{x}, {0.0, 0.0}, {most, most}}; }
+  struct Robot {
+    explicit Robot(const Scene& scene) : model(build(scene, block_of(600))), workspace(make_workspace(model)) {}
+    Model model;
+    Workspace workspace;
+    State state = initial_state(model);
 
-  Model model = build(two_cables(), block_of(600));
-  Workspace workspace = make_workspace(model);
-  State state = initial_state(model);
+    Vec3 tip(const State& at) const { return output_position(model, at, model.outputs[0]); }
+    Vec3 tip() const { return tip(state); }
+    Command nothing() const { return {std::vector<double>(model.actuators.size(), 0.0), {}}; }
+    StepReport seek(const Eigen::VectorXd& goal) {
+      return inverse_step(model, workspace, {goal}, nothing(), model.scene.time.step, state);
+    }
+    StepReport settle(const Eigen::VectorXd& goal) {
+      return inverse_equilibrium(model, workspace, {goal}, nothing(), state.time + model.scene.time.step, state);
+    }
+    /// The same step with commands as they are given.
+    State direct(const State& from, const std::vector<double>& commands) {
+      State next = from;
+      Workspace own = make_workspace(model);
+      EXPECT_TRUE(accepted(step(model, own, {commands, {}}, model.scene.time.step, next).status));
+      return next;
+    }
+    State at_rest(const std::vector<double>& commands) {
+      Workspace own = make_workspace(model);
+      const StepResult result = equilibrium_step(model, own, {commands, {}}, initial_state(model), 0.02);
+      EXPECT_TRUE(accepted(result.report.status));
+      return result.next;
+    }
+  };
 };
 
-TEST_F(Inverse, ReplayedForcesReproduceTheStep) {
-  for (int i = 0; i < 5; ++i) {
-    const State before = state;
-    const InverseReport report =
-        inverse_step(model, workspace, goal_at(tip(before) - 0.1 * mm * Vec3::UnitY()), model.scene.time.step, state);
-    ASSERT_TRUE(accepted(report.step.status)) << to_string(report.step.status);
-    const State again = direct(before, state.actuators);
-    EXPECT_LT((again.solids[0].x - state.solids[0].x).norm(), 1e-9 * 50 * mm) << i;
-    EXPECT_LT((again.rods[0].q - state.rods[0].q).norm(), 1e-8 * (1.0 + state.rods[0].q.norm())) << i;
+TEST_F(Inverse, ReplayedCommandsReproduceTheStep) {
+  for (const bool displacement : {false, true}) {
+    for (const int iterations : {1, 0}) {
+      Scene scene = two_cables();
+      scene.newton.iterations = iterations;
+      if (displacement) drive_by_displacement(scene);
+      Robot robot(scene);
+      for (int i = 0; i < 5; ++i) {
+        const State before = robot.state;
+        const StepReport report = robot.seek(robot.tip() - 0.1 * mm * Vec3::UnitY());
+        ASSERT_TRUE(accepted(report.status)) << to_string(report.status);
+        const State again = robot.direct(before, command_of(robot.model, robot.state).actuators);
+        EXPECT_LT((again.solids[0].x - robot.state.solids[0].x).norm(), 1e-9 * 50 * mm) << i;
+        EXPECT_LT((again.rods[0].q - robot.state.rods[0].q).norm(), 1e-8 * (1.0 + again.rods[0].q.norm())) << i;
+      }
+    }
   }
 }
 
 TEST_F(Inverse, ReachesWhatADirectStepReached) {
-  const State wanted = direct(state, {1.3, 0.4});
-  const InverseReport report = inverse_step(model, workspace, goal_at(tip(wanted)), model.scene.time.step, state);
-  ASSERT_TRUE(accepted(report.step.status));
-  EXPECT_LT(report.distance, 1e-4 * (tip(wanted) - tip(initial_state(model))).norm());
-  EXPECT_LT((tip(state) - tip(wanted)).norm(), 1e-3 * (tip(wanted) - tip(initial_state(model))).norm());
+  Robot robot(two_cables());
+  const State wanted = robot.direct(robot.state, {1.3, 0.4});
+  const double way = (robot.tip(wanted) - robot.tip()).norm();
+  ASSERT_TRUE(accepted(robot.seek(robot.tip(wanted)).status));
+  EXPECT_LT((robot.tip() - robot.tip(wanted)).norm(), 1e-3 * way);
 }
 
-/// No other forces within the bounds bring the tip nearer.
-TEST_F(Inverse, FindsTheNearestWithinItsBounds) {
-  const State start = state;
+/// With `newton` converged the goal is met to the tolerance of the motion, not of one linearisation.
+TEST_F(Inverse, ConvergedStepsMeetTheirGoals) {
+  Scene scene = two_cables();
+  scene.newton.iterations = 0;
+  scene.targets[0].weights = {1, 1, 0};  // two forces, two components
+  Robot robot(scene);
+  for (int i = 0; i < 10; ++i) {
+    const Vec3 goal = robot.tip() + Vec3(-0.05 * mm, -0.05 * mm, 0.0);
+    const StepReport report = robot.seek(goal);
+    ASSERT_TRUE(accepted(report.status)) << to_string(report.status);
+    EXPECT_EQ(report.aim.outcome, Outcome::reached);
+    EXPECT_LT((robot.tip() - goal).head<2>().norm(), 1e-9) << i;
+  }
+}
+
+/// No other forces within the bounds bring the tip nearer, and what is in the way is told.
+TEST_F(Inverse, FindsTheNearestWithinItsLimits) {
+  Robot robot(two_cables(2.0));
+  const State start = robot.state;
   for (const Vec3& off : {Vec3(0, -3 * mm, 0), Vec3(0, 3 * mm, 0), Vec3(-1 * mm, 0, 0), Vec3(1 * mm, 0, 0)}) {
-    const Vec3 goal = tip(start) + off;
-    state = start;
-    const InverseReport report = inverse_step(model, workspace, goal_at(goal, 2.0), model.scene.time.step, state);
-    ASSERT_TRUE(accepted(report.step.status));
-    const std::vector<double> best = state.actuators;
-    const double distance = (tip(state) - goal).norm();
-    EXPECT_NEAR(report.distance, distance, 1e-9);
+    const Vec3 goal = robot.tip(start) + off;
+    robot.state = start;
+    const StepReport report = robot.seek(goal);
+    ASSERT_TRUE(accepted(report.status));
+    const std::vector<double> best = robot.state.actuators;
+    const double distance = (robot.tip() - goal).norm();
+    const bool pulls_back = off.x() < 0.0;  // which two cables can, though not without moving the tip sideways, too
+    EXPECT_EQ(report.aim.outcome, pulls_back ? Outcome::nearest : Outcome::limited);
+    EXPECT_NEAR(report.aim.farthest, distance / (0.1 * mm), 1e-6);
+    EXPECT_EQ(report.aim.binding.empty(), pulls_back);
+    EXPECT_TRUE(report.aim.certain);
+    for (const Bound& bound : report.aim.binding) {
+      EXPECT_NEAR(best[bound.actuator], bound.limit == Limit::least_force ? 0.0 : 2.0, 1e-9);
+      EXPECT_NE(describe(robot.model, bound).find("force at"), std::string::npos);
+    }
     for (std::size_t a = 0; a < 2; ++a) {
       EXPECT_GE(best[a], 0.0);
       EXPECT_LE(best[a], 2.0);
@@ -86,74 +139,326 @@ TEST_F(Inverse, FindsTheNearestWithinItsBounds) {
         std::vector<double> other = best;
         other[a] += change;
         if (other[a] < 0.0 || other[a] > 2.0) continue;
-        EXPECT_GE((tip(direct(start, other)) - goal).norm(), distance * (1.0 - 1e-6)) << a << " " << change;
+        EXPECT_GE((robot.tip(robot.direct(start, other)) - goal).norm(), distance * (1.0 - 1e-6)) << a << " " << change;
       }
     }
   }
 }
 
-/// What breaks before anything is steered.
-TEST_F(Inverse, FailsAsAStepDoes) {
-  state.solids[0].v.setConstant(1e200);
-  const State before = state;
-  const InverseReport report = inverse_step(model, workspace, goal_at(Vec3::Zero()), 0.02, state);
-  EXPECT_FALSE(accepted(report.step.status));
-  EXPECT_TRUE(std::isnan(report.distance));
-  EXPECT_EQ(pack(state), pack(before));
+/// A motor that moves may be held by what it must pull, and one that pulls by how far it comes.
+TEST_F(Inverse, KeepsLimitsOfWhatIsNotTold) {
+  Scene scene = two_cables(1.5);
+  drive_by_displacement(scene);
+  Robot moved(scene);
+  const StepReport report = moved.seek(moved.tip() - 5 * mm * Vec3::UnitY());
+  ASSERT_TRUE(accepted(report.status));
+  EXPECT_EQ(report.aim.outcome, Outcome::limited);
+  EXPECT_NEAR(moved.state.actuators[1], 1.5, 1e-6);  // (the cable below the middle)
+  EXPECT_GE(moved.state.actuators[0], -1e-9);
+
+  scene = two_cables();
+  scene.actuators[1].second.limits.displacement = {-0.02 * mm, 0.03 * mm};
+  Robot pulled(scene);
+  ASSERT_TRUE(accepted(pulled.seek(pulled.tip() - 5 * mm * Vec3::UnitY()).status));
+  EXPECT_NEAR(motor_positions(pulled.model, pulled.state)[1], 0.03 * mm, 1e-9);
+}
+
+TEST_F(Inverse, KeepsRates) {
+  Scene scene = two_cables();
+  scene.actuators[1].second.limits.force_rate = 10.0;
+  Robot robot(scene);
+  for (int i = 1; i <= 5; ++i) {
+    const StepReport report = robot.seek(robot.tip() - 5 * mm * Vec3::UnitY());
+    ASSERT_TRUE(accepted(report.status));
+    EXPECT_NEAR(robot.state.actuators[1], 0.2 * i, 1e-9);
+    EXPECT_EQ(report.aim.binding.back().limit, Limit::force_rate);
+  }
+  scene = two_cables();
+  scene.actuators[1].second.limits.speed = 1 * mm;
+  Robot slow(scene);
+  for (int i = 1; i <= 5; ++i) {
+    ASSERT_TRUE(accepted(slow.seek(slow.tip() - 5 * mm * Vec3::UnitY()).status));
+    EXPECT_NEAR(motor_positions(slow.model, slow.state)[1], 0.02 * mm * i, 1e-9);
+  }
+}
+
+/// A pretension that the rate does not allow at once comes as fast as the rate does, and is told as dropped till then.
+TEST_F(Inverse, DropsWhatOtherLimitsExclude) {
+  Scene scene = two_cables();
+  for (auto& [name, actuator] : scene.actuators) {
+    actuator.limits.force = Span{0.5, 10.0};
+    actuator.limits.force_rate = 10.0;
+  }
+  Robot robot(scene);
+  const Vec3 goal = robot.tip();
+  for (int i = 1; i <= 5; ++i) {
+    const StepReport report = robot.seek(goal);
+    ASSERT_TRUE(accepted(report.status));
+    EXPECT_EQ(report.aim.dropped.size(), i < 3 ? 2 : 0) << i;
+    for (const double force : robot.state.actuators) EXPECT_GE(force, std::min(0.5, 0.2 * i) - 1e-8) << i;
+    for (const Bound& bound : report.aim.dropped) EXPECT_EQ(bound.limit, Limit::least_force);
+  }
+}
+
+/// One component, two cables: what is left open goes to the preferred forces, and the target is met all the same.
+TEST_F(Inverse, ChoosesPreferredForcesWhereTargetsLeaveAChoice) {
+  Scene scene = two_cables();
+  scene.targets[0].weights = {0, 1, 0};
+  Robot lazy(scene);
+  const Vec3 goal = lazy.tip() - 0.05 * mm * Vec3::UnitY();
+  EXPECT_EQ(lazy.seek(goal).aim.outcome, Outcome::reached);
+  EXPECT_NEAR(lazy.state.actuators[0], 0.0, 1e-6);
+  for (auto& [name, actuator] : scene.actuators) actuator.preferred = 1.0;
+  Robot tense(scene);
+  EXPECT_EQ(tense.seek(goal).aim.outcome, Outcome::reached);
+  EXPECT_NEAR(tense.tip().y(), lazy.tip().y(), 1e-7);
+  // Nearest to 1 N each on the line of forces that do it.
+  const double a = tense.state.actuators[0] - 1.0, b = tense.state.actuators[1] - 1.0;
+  EXPECT_GT(std::abs(a) + std::abs(b), 0.01);
+  const Eigen::MatrixXd J = actuator_jacobian(tense.model, tense.workspace, initial_state(tense.model),
+                                              JacobianOf::step, tense.model.scene.time.step)
+                                .effectors;
+  EXPECT_NEAR(a * J(1, 1) - b * J(1, 0), 0.0, 1e-5 * J.row(1).norm());
 }
 
 TEST_F(Inverse, SinglePrecisionIsSteeredToo) {
   Scene scene = two_cables();
+  Robot robot(scene);
   scene.newton.precision = linalg::Precision::float32;
-  const Model single = build(scene, block_of(600));
-  Workspace own = make_workspace(single);
-  State other = state;
+  Robot single(scene);
+  const Vec3 start = robot.tip();
   for (int i = 0; i < 5; ++i) {
-    const Goal goal = goal_at(tip(state) - 0.1 * mm * Vec3::UnitY());
-    ASSERT_TRUE(accepted(inverse_step(model, workspace, goal, 0.02, state).step.status));
-    ASSERT_TRUE(accepted(inverse_step(single, own, goal, 0.02, other).step.status));
+    const Vec3 goal = robot.tip() - 0.1 * mm * Vec3::UnitY();
+    ASSERT_TRUE(accepted(robot.seek(goal).status));
+    ASSERT_TRUE(accepted(single.seek(goal).status));
   }
-  EXPECT_LT((tip(other) - tip(state)).norm(), 1e-4 * (tip(state) - tip(initial_state(model))).norm());
-  EXPECT_NEAR(other.actuators[0], state.actuators[0], 1e-3 * std::abs(state.actuators[0]));
+  EXPECT_LT((single.tip() - robot.tip()).norm(), 1e-4 * (robot.tip() - start).norm());
+  EXPECT_NEAR(single.state.actuators[1], robot.state.actuators[1], 1e-3 * robot.state.actuators[1]);
 }
 
-TEST_F(Inverse, FollowsAPathUntilItIsThere) {
-  const State far = [&] {
-    State end = state;
-    Workspace own = make_workspace(model);
-    for (int i = 0; i < 150; ++i) EXPECT_TRUE(accepted(step(model, own, {{2.0, 0.3}, {}}, 0.02, end).status));
-    return end;
-  }();
-  const Vec3 from = tip(state), to = tip(far);
-  for (int i = 1; i <= 200; ++i) {
-    const Vec3 goal = from + std::min(1.0, i / 100.0) * (to - from);
-    ASSERT_TRUE(accepted(inverse_step(model, workspace, goal_at(goal), 0.02, state).step.status)) << i;
+/// Turns and strains of rods, turns of solids, beside positions.
+Scene hinged() {
+  Scene scene = two_cables();
+  scene.outputs[0].second.quantity = Quantity::orientation;
+  scene.targets[0].weights = {0, 0, 1};
+  Output strain;
+  strain.rod = "other";
+  strain.at = 25 * mm;
+  strain.quantity = Quantity::strain;
+  scene.outputs.emplace_back("bend", strain);
+  Output along = strain;
+  along.quantity = Quantity::orientation;
+  scene.outputs.emplace_back("turn", along);
+  Output point = strain;
+  point.quantity = Quantity::position;
+  scene.outputs.emplace_back("middle", point);
+  return scene;
+}
+
+Target wish(const std::string& output, std::vector<double> weights = {}) {
+  Target target;
+  target.output = output;
+  target.at = External{};
+  target.strain = Strain::bending_z;
+  target.weights = std::move(weights);
+  return target;
+}
+
+TEST_F(Inverse, MeetsTurnsAndStrains) {
+  struct Case {
+    std::string output;
+    Eigen::VectorXd goal;
+    std::vector<double> weights;
+  };
+  for (const Case& own :
+       {Case{"tip", Vec3(0, 0, -0.05), {0, 0, 1}}, Case{"turn", Vec3(0, 0, -0.03), {0, 0, 1}},
+        Case{"bend", Eigen::VectorXd::Constant(1, -1.5), {}}, Case{"middle", Vec3(0, 2.8 * mm, 0), {0, 1, 0}}}) {
+    Scene scene = hinged();
+    scene.targets = {wish(own.output, own.weights)};
+    scene.analysis = Analysis::quasi_static;
+    scene.newton.iterations = 0;
+    Robot robot(scene);
+    const StepReport report = robot.settle(own.goal);
+    ASSERT_TRUE(accepted(report.status)) << own.output;
+    EXPECT_EQ(report.aim.outcome, Outcome::reached) << own.output;
+    EXPECT_LT(report.aim.farthest, 1e-3) << own.output << " " << report.newton;
+    const Eigen::VectorXd value = effector_value(robot.model, robot.state, robot.model.effectors[0]);
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      if (own.weights.empty() || own.weights[static_cast<std::size_t>(i)] > 0.0) {
+        EXPECT_NEAR(value[i], own.goal[i], 1e-3 * own.goal.norm()) << own.output;
+      }
+    }
   }
-  EXPECT_GT((to - from).norm(), 1 * mm);
-  EXPECT_LT((tip(state) - to).norm(), 0.02 * (to - from).norm());
+}
+
+/// The tangent of equilibria against differences of equilibria, for all kinds of targets and both kinds of commands.
+TEST_F(Inverse, EquilibriumJacobianIsTheDifferenceOfEquilibria) {
+  for (const bool displacement : {false, true}) {
+    Scene scene = hinged();
+    scene.targets = {wish("tip"), wish("turn"), wish("bend"), wish("middle")};
+    scene.analysis = Analysis::quasi_static;
+    scene.newton.iterations = 0;
+    scene.newton.tolerance = 1e-12;
+    if (displacement) drive_by_displacement(scene);
+    Robot robot(scene);
+    const std::vector<double> at = displacement ? std::vector{0.3 * mm, 0.8 * mm} : std::vector{1.0, 3.0};
+    const State rest = robot.at_rest(at);
+    const ActuatorJacobian found =
+        actuator_jacobian(robot.model, robot.workspace, rest, JacobianOf::equilibrium, robot.model.scene.time.step);
+    Eigen::VectorXd where(10);
+    for (const EffectorModel& own : robot.model.effectors)
+      where.segment(own.first, own.size) = effector_value(robot.model, rest, own);
+    ASSERT_EQ(found.effectors.rows(), 10);
+    EXPECT_EQ(found.rows[0], "tip.x [rad]");
+    EXPECT_EQ(found.rows[6], "bend.bending_z [1/m]");
+    EXPECT_EQ(found.columns[1], displacement ? "other.displacement [m]" : "other.force [N]");
+    for (int a = 0; a < 2; ++a) {
+      const double e = displacement ? 1e-3 * mm : 2e-3;
+      std::vector<double> more = at, less = at;
+      more[static_cast<std::size_t>(a)] += e;
+      less[static_cast<std::size_t>(a)] -= e;
+      const State high = robot.at_rest(more), low = robot.at_rest(less);
+      // Of turns, that from where it is.
+      Eigen::VectorXd ahead, behind;
+      effector_errors(robot.model, high, {where}, ahead);
+      effector_errors(robot.model, low, {where}, behind);
+      for (const EffectorModel& own : robot.model.effectors) {
+        const Eigen::VectorXd slope = ((ahead - behind) / (2.0 * e)).segment(own.first, own.size);
+        const Eigen::VectorXd column = found.effectors.col(a).segment(own.first, own.size);
+        EXPECT_LT((column - slope).norm(), 1e-5 * slope.norm())
+            << displacement << " " << a << " " << robot.model.outputs[own.output].name;
+      }
+      for (int b = 0; b < 2; ++b) {
+        const auto k = static_cast<std::size_t>(b);
+        EXPECT_NEAR(found.forces(b, a), (high.actuators[k] - low.actuators[k]) / (2.0 * e),
+                    1e-5 * found.forces.col(a).norm());
+        EXPECT_NEAR(found.positions(b, a),
+                    (motor_positions(robot.model, high)[k] - motor_positions(robot.model, low)[k]) / (2.0 * e),
+                    1e-5 * found.positions.col(a).norm());
+      }
+    }
+  }
+}
+
+/// (14): the linear step is exactly linear in its commands.
+TEST_F(Inverse, StepJacobianIsTheDifferenceOfLinearSteps) {
+  for (const bool displacement : {false, true}) {
+    Scene scene = hinged();
+    scene.targets = {wish("middle"), wish("bend")};
+    if (displacement) drive_by_displacement(scene);
+    Robot robot(scene);
+    const std::vector<double> at = displacement ? std::vector{0.1 * mm, 0.4 * mm} : std::vector{1.0, 2.0};
+    for (int i = 0; i < 400; ++i)
+      robot.state = robot.direct(robot.state, at);  // to rest: a rod's point moves on a curve
+    const ActuatorJacobian found =
+        actuator_jacobian(robot.model, robot.workspace, robot.state, JacobianOf::step, robot.model.scene.time.step);
+    for (int a = 0; a < 2; ++a) {
+      const double e = displacement ? 1e-2 * mm : 1e-2;
+      std::vector<double> more = at, less = at;
+      more[static_cast<std::size_t>(a)] += e;
+      less[static_cast<std::size_t>(a)] -= e;
+      const State high = robot.direct(robot.state, more), low = robot.direct(robot.state, less);
+      for (const EffectorModel& own : robot.model.effectors) {
+        const Eigen::VectorXd slope =
+            (effector_value(robot.model, high, own) - effector_value(robot.model, low, own)) / (2.0 * e);
+        EXPECT_LT((found.effectors.col(a).segment(own.first, own.size) - slope).norm(), 1e-5 * slope.norm())
+            << displacement << " " << a << " " << robot.model.outputs[own.output].name;
+      }
+    }
+  }
+}
+
+TEST_F(Inverse, EquilibriaAreTheNearestThereAre) {
+  Scene scene = two_cables(4.0);
+  scene.analysis = Analysis::quasi_static;
+  scene.newton.iterations = 0;
+  Robot robot(scene);
+  const Vec3 start = robot.tip();
+  for (const Vec3& off : {Vec3(0, -1.5 * mm, 0), Vec3(0, -20 * mm, 0), Vec3(2 * mm, 1 * mm, 0), Vec3(-3 * mm, 0, 0)}) {
+    robot.state = initial_state(robot.model);
+    const Vec3 goal = start + off;
+    const StepReport report = robot.settle(goal);
+    ASSERT_TRUE(accepted(report.status));
+    const std::vector<double> best = robot.state.actuators;
+    const double distance = (robot.tip() - goal).norm();
+    EXPECT_NE(report.aim.outcome, Outcome::none);
+    for (std::size_t a = 0; a < 2; ++a) {
+      for (const double change : {-0.02, 0.02}) {
+        std::vector<double> other = best;
+        other[a] += change;
+        if (other[a] < 0.0 || other[a] > 4.0) continue;
+        EXPECT_GE((robot.tip(robot.at_rest(other)) - goal).norm(), distance - 1e-9) << a << " " << change;
+      }
+    }
+  }
+}
+
+TEST_F(Inverse, RunsFollowTheirTargets) {
+  for (const Analysis analysis : {Analysis::dynamic, Analysis::quasi_static}) {
+    Scene scene = two_cables();
+    scene.analysis = analysis;
+    scene.time = {0.02, 0.4};
+    scene.newton.iterations = analysis == Analysis::dynamic ? 1 : 0;
+    const Vec3 tip(50 * mm, 5 * mm, 5 * mm);
+    scene.targets[0].at = Track{{0.0, 0.2}, {tip, tip - 1 * mm * Vec3::UnitY()}};
+    scene.targets[0].weights = {0, 1, 0};
+    Robot robot(scene);
+    int steps = 0;
+    const RunEnd end = run(robot.model, robot.state, [&](const State& state, const StepReport& report) {
+      ++steps;
+      robot.state = state;
+      EXPECT_NE(report.aim.outcome, Outcome::none);
+      return true;
+    });
+    EXPECT_EQ(end, RunEnd::done);
+    EXPECT_EQ(steps, 20);
+    EXPECT_NEAR(robot.tip().y(), 4 * mm, analysis == Analysis::dynamic ? 0.01 * mm : 1e-8);
+    const std::vector<std::string> names = signal_names(robot.model);
+    const auto error = std::find(names.begin(), names.end(), "tip.error");
+    ASSERT_NE(error, names.end());
+    EXPECT_NEAR(signal_values(robot.model, robot.state)[static_cast<std::size_t>(error - names.begin())],
+                std::abs(robot.tip().y() - 4 * mm), 1e-12);
+  }
+}
+
+/// What breaks before anything is steered.
+TEST_F(Inverse, FailsAsAStepDoes) {
+  Robot robot(two_cables());
+  robot.state.solids[0].v.setConstant(1e200);
+  const State before = robot.state;
+  const StepReport report = robot.seek(Vec3::Zero());
+  EXPECT_FALSE(accepted(report.status));
+  EXPECT_EQ(report.aim.outcome, Outcome::none);
+  EXPECT_EQ(pack(robot.state), pack(before));
 }
 
 TEST_F(Inverse, RefusesWhatItDoesNotKnow) {
-  const Goal goal = goal_at(Vec3::Zero());
-  EXPECT_THROW(inverse_step(model, workspace, {{}, {0.0, 0.0}, {1.0, 1.0}}, 0.02, state), std::invalid_argument);
-  EXPECT_THROW(inverse_step(model, workspace, {{Vec3::Zero()}, {0.0}, {1.0, 1.0}}, 0.02, state), std::invalid_argument);
-  Scene driven = two_cables();
-  driven.actuators[0].second.driven = Driven::displacement;
-  const Model other = build(driven, block_of(600));
-  Workspace own = make_workspace(other);
-  State start = initial_state(other);
-  EXPECT_THROW(inverse_step(other, own, goal, 0.02, start), std::invalid_argument);
-  const State before = state;
-  Goal crossed = goal, nowhere = goal;
-  crossed.least[1] = 20.0;
-  crossed.most[1] = 10.0;
-  nowhere.positions[0].y() = NAN;
-  EXPECT_THROW(inverse_step(model, workspace, crossed, 0.02, state), std::invalid_argument);
-  EXPECT_THROW(inverse_step(model, workspace, nowhere, 0.02, state), std::invalid_argument);
-  EXPECT_EQ(pack(state), pack(before));
-  Scene unknown = two_cables();
-  unknown.effectors = {"hand"};
-  EXPECT_ANY_THROW(build(unknown, block_of(600)));
+  Robot robot(two_cables());
+  const State before = robot.state;
+  EXPECT_THROW(robot.seek(Eigen::Vector2d(1, 2)), std::invalid_argument);
+  EXPECT_THROW(robot.seek(Vec3(0, NAN, 0)), std::invalid_argument);
+  EXPECT_EQ(pack(robot.state), pack(before));
+  const auto built = [](auto change) {
+    Scene scene = two_cables();
+    change(scene);
+    return build(scene, block_of(600));
+  };
+  EXPECT_NO_THROW(built([](Scene&) {}));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].output = "hand"; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].weights = {1, 1}; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].weights = {0, 0, 0}; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].weights = {1, -1, 0}; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].tolerance = 0.0; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].at = Track{{0.0}, {Eigen::Vector2d(1, 2)}}; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets[0].at = Track{{0.0, 1.0}, {Vec3(1, 2, 3)}}; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.targets.clear(); }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.outputs[0].second.quantity = Quantity::stress; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.analysis = Analysis::statics; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.actuators[0].second.limits.force = Span{2.0, 1.0}; }));
+  EXPECT_ANY_THROW(built([](Scene& s) { s.actuators[0].second.limits.speed = 0.0; }));
+  EXPECT_ANY_THROW(built([](Scene& s) {
+    for (auto& [name, actuator] : s.actuators) actuator.drive = Table{{0.0}, {1.0}};
+  }));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -32,13 +33,21 @@ inline void add_cable(Scene& scene, const std::string& name, const std::vector<V
   scene.actuators.emplace_back(name, actuator);
 }
 
-/// A point of the body as the effector `tip`, for inverse steps.
-inline void add_effector(Scene& scene, const Vec3& point) {
+/// A point of the body that forces of all actuators, of `most` at most, are to bring where the caller says.
+inline void add_target(Scene& scene, const Vec3& point, double most = std::numeric_limits<double>::infinity()) {
   Output output;
   output.solid = "body";
   output.point.x = point;
   scene.outputs.emplace_back("tip", output);
-  scene.effectors = {"tip"};
+  Target target;
+  target.output = "tip";
+  target.at = External{};
+  scene.targets.push_back(target);
+  for (auto& [name, actuator] : scene.actuators) {
+    actuator.driven = Driven::force;
+    actuator.drive = Sought{};
+    actuator.limits.force = Span{0.0, most};
+  }
 }
 
 inline std::vector<double> evenly(double length, int count) {

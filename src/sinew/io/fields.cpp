@@ -95,6 +95,16 @@ std::vector<std::string> At::names_in(const std::string& group) const {
   return names;
 }
 
+std::optional<At> At::object(const std::string& group, const std::string& name) const {
+  const Entry* found = find(*root_, group);
+  if (found == nullptr || find(found->value, name) == nullptr) return {};
+  At at = *this;
+  at.node_ = &found->value;
+  at.path_ = group;
+  at.key_ = nullptr;
+  return at.child(name);
+}
+
 void At::refuse(std::string rule, std::string remedy) const {
   if (remedy.empty() && key_ != nullptr) remedy = help(*key_);
   throw InputError({.file = line_ > 0 ? file_ : "--set",

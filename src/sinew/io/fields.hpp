@@ -54,6 +54,9 @@ class At {
   /// The keys of the map that the document has under `group`; none if there is no such map.
   std::vector<std::string> names_in(const std::string& group) const;
 
+  /// An object of the document by its group and name, if there is one.
+  std::optional<At> object(const std::string& group, const std::string& name) const;
+
   /// Throws InputError; without a remedy, the doc and example of the key are one.
   [[noreturn]] void refuse(std::string rule, std::string remedy = "") const;
   /// The same about a key of this map, known or not, at the line of that key if it stands there.

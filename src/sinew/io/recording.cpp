@@ -137,6 +137,7 @@ std::string encode(const RecordedStep& step) {
   Encoder out;
   out.f64(step.time);
   out.string(step.status);
+  out.string(step.targets);
   out.u32(step.newton);
   out.f64(step.residual);
   out.f64(step.violation);
@@ -163,6 +164,7 @@ std::optional<RecordedStep> decode_step(std::string_view payload, const Recordin
   RecordedStep step;
   step.time = in.f64();
   step.status = in.string();
+  step.targets = in.string();
   step.newton = in.u32();
   step.residual = in.f64();
   step.violation = in.f64();

@@ -15,7 +15,7 @@
 //
 //   header  string program_version, scene_text, scene_name, scene_folder, inputs_hash
 //           u64 state_layout, u64 number of signals, string each signal's name
-//   step    f64 time, string status, u32 newton, f64 residual, f64 violation, f64 each signal,
+//   step    f64 time, string status, string targets, u32 newton, f64 residual, f64 violation, f64 each signal,
 //           u64 number of state entries, f64 each
 //   string  u64 bytes, then the bytes
 //
@@ -33,7 +33,7 @@
 
 namespace sinew::io {
 
-inline constexpr std::uint32_t kRecordingVersion = 4;
+inline constexpr std::uint32_t kRecordingVersion = 5;
 
 /// What was run. `inputs_hash` is the content hash of everything the scene reads (io/content_hash).
 struct RecordingHeader {
@@ -52,6 +52,7 @@ struct RecordingHeader {
 struct RecordedStep {
   double time = 0.0;            ///< [s]
   std::string status;           ///< "converged", ...
+  std::string targets;          ///< of an inverse step: "reached", or what is in the way
   std::uint32_t newton = 0;     ///< iterations
   double residual = 0.0;        ///< [-] relative, as the step's report has it
   double violation = 0.0;       ///< [m] largest of the constraints

@@ -41,7 +41,7 @@ Type<int> axis() {
 
 Field<Actuator> driven(const std::string& name, const std::string& doc, const std::string& example, Motion motion,
                        Driven what, Dimension dimension) {
-  const Type<Drive> type = drive(dimension);
+  const Type<Drive> type = motor_drive(dimension);
   return {{name, optional, doc, example},
           [=](Actuator& actuator, const At& at) {
             actuator.motion = motion;
@@ -49,6 +49,43 @@ Field<Actuator> driven(const std::string& name, const std::string& doc, const st
             actuator.drive = type.read(at);
           },
           type.schema};
+}
+
+Type<Limits> limits() {
+  const Type<Span> force = span(Dimension::force), torque = span(Dimension::torque);
+  const auto speed = [](Limits& own) -> std::optional<double>& { return own.speed; };
+  return map<Limits>(
+      {"limits",
+       {field<Limits>({"force", optional, "the least and most force [N]; of what pulls the least is 0 if left out",
+                       "[0.5 N, 20 N]"},
+                      &Limits::force, force),
+        field<Limits>({"torque", optional, "the least and most torque of what turns [N m]", "[-20 mN m, 20 mN m]"},
+                      &Limits::force, torque),
+        field<Limits>({"displacement", optional, "the least and most displacement [m]", "[0 mm, 30 mm]"},
+                      &Limits::displacement, span(Dimension::length)),
+        field<Limits>({"angle", optional, "the least and most angle of what turns [rad]", "[-90 deg, 90 deg]"},
+                      &Limits::displacement, span(Dimension::angle)),
+        field<Limits>({"speed", optional, "how fast it moves at most [m/s]", "50 mm/s"}, speed,
+                      quantity(Dimension::velocity, above(0.0))),
+        field<Limits>({"turning_speed", optional, "how fast it turns at most [rad/s]", "90 deg/s"}, speed,
+                      quantity(Dimension::turning, above(0.0))),
+        field<Limits>({"force_rate", optional, "how fast its force changes at most [N/s]", "20 N/s"},
+                      &Limits::force_rate, quantity(Dimension::force_rate, above(0.0)))}});
+}
+
+/// What turns has torques and angles, what moves forces and displacements.
+void check_limits(const At& at) {
+  if (!at.has("limits")) return;
+  const At given = at.child("limits");
+  const bool turns = at.has("torque") || at.has("angle");
+  for (const char* key : {"force", "displacement", "speed", "force_rate"}) {
+    if (turns && given.has(key))
+      given.refuse_key(key, "has no meaning for what turns", "give `torque`, `angle` or `turning_speed`");
+  }
+  for (const char* key : {"torque", "angle", "turning_speed"}) {
+    if (!turns && given.has(key))
+      given.refuse_key(key, "has no meaning for what does not turn", "give `force`, `displacement` or `speed`");
+  }
 }
 
 }  // namespace
@@ -67,23 +104,31 @@ Type<Actuator> actuator() {
                          "{distance: 10 mm, angle: 90 deg}"},
                         &Actuator::tendon, tendon()),
         driven("force",
-               "the force that it exerts [N], pulling if there is no axis: a value, a table over time or "
-               "`external`",
+               "the force that it exerts [N], pulling if there is no axis: a value, a table over time, "
+               "`external` or `inverse`",
                "3 N", translation, Driven::force, Dimension::force),
-        driven("displacement", "how far it pulls or moves [m]: a value, a table over time or `external`",
+        driven("displacement", "how far it pulls or moves [m]: a value, a table over time, `external` or `inverse`",
                "{times: [0, 1], values: [0, 20 mm]}", translation, Driven::displacement, Dimension::length),
-        driven("torque", "the torque it exerts about the axis [N m]: a value, a table over time or `external`",
+        driven("torque",
+               "the torque it exerts about the axis [N m]: a value, a table over time, `external` or `inverse`",
                "20 mN m", rotation, Driven::torque, Dimension::torque),
-        driven("angle", "how far it turns the base [rad]: a value, a table over time or `external`",
+        driven("angle", "how far it turns the base [rad]: a value, a table over time, `external` or `inverse`",
                "{times: [0, 1], values: [0, 90 deg]}", rotation, Driven::angle, Dimension::angle),
         driven("tension",
-               "the tension of the tendon [N], another word for its force: a value, a table over time or "
-               "`external`",
-               "3 N", translation, Driven::force, Dimension::force)},
+               "the tension of the tendon [N], another word for its force: a value, a table over time, "
+               "`external` or `inverse`",
+               "3 N", translation, Driven::force, Dimension::force),
+        field<Actuator>({"limits", optional, "what it can do, to which the inverse keeps", "{force: [0 N, 20 N]}"},
+                        &Actuator::limits, limits()),
+        field<Actuator>(
+            {"preferred", optional,
+             "the force that it takes where targets leave a choice [N]; as little as possible if left out", "1 N"},
+            &Actuator::preferred, quantity(Dimension::force))},
        {exactly_one({"force", "displacement", "torque", "angle", "tension"}),
         only_with("force", "motion", "translation"), only_with("displacement", "motion", "translation"),
         only_with("torque", "motion", "rotation"), only_with("angle", "motion", "rotation"),
-        excludes("tendon", {"motion", "axis", "torque", "angle"}), needs("tension", "tendon")}});
+        excludes("tendon", {"motion", "axis", "torque", "angle"}), needs("tension", "tendon")},
+       [](const Actuator&, const At& at) { check_limits(at); }});
 }
 
 }  // namespace sinew::io

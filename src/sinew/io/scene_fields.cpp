@@ -146,7 +146,12 @@ const Type<Scene>& scene_type() {
             &Scene::loads, named<Load>("a load", load())),
         field<Scene>({"outputs", optional, "what is recorded of points of solids and rods, by name",
                       "{tip: {solid: finger, point: [100 mm, 0, 0]}}"},
-                     &Scene::outputs, named<Output>("an output", output()))},
+                     &Scene::outputs, named<Output>("an output", output())),
+        field<Scene>(
+            {"targets", optional,
+             "where outputs are to be brought by the actuators that are `inverse`, by the names of the outputs",
+             "{tip: {at: [120 mm, 0, 30 mm]}}"},
+            &Scene::targets, targets())},
        {some_body(), names_apart("solids", "rods", "is the name of a solid, and results are named after it"),
         names_apart("solids", "bodies", "is the name of a solid, and results are named after it"),
         names_apart("rods", "bodies", "is the name of a rod, and results are named after it"),

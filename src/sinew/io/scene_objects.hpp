@@ -16,6 +16,8 @@ Type<Coupling> coupling();
 Type<Actuator> actuator();
 Type<Load> load();
 Type<Output> output();
+/// By the names of their outputs.
+Type<std::vector<Target>> targets();
 
 /// Of a rod, or of a part of one.
 Type<CrossSection> cross_section();

@@ -57,12 +57,15 @@ Type<Output> output() {
                       quantity(Dimension::length, at_least(0.0))),
         field<Output>(
             {"quantity", optional,
-             "what is recorded there: position, strain or stress; of a solid also displacement, or the reaction of all "
-             "that is held in a region; of a rod also force or moment; of a body position, or the force of all that "
-             "touches it",
+             "what is recorded there: position, orientation (how it has turned since the start), strain or stress; of "
+             "a "
+             "solid also displacement, or the reaction of all "
+             "that is held in a region; of a rod also force or moment; of a body position, orientation, or the "
+             "force of all that touches it",
              "strain"},
             &Output::quantity,
-            word_of<Quantity>({"position", "displacement", "strain", "force", "moment", "stress", "reaction"})),
+            word_of<Quantity>(
+                {"position", "displacement", "orientation", "strain", "force", "moment", "stress", "reaction"})),
         region()},
        {exactly_one({"solid", "rod", "body", "between"}), needs("point", "solid"), needs("in", "solid"),
         needs("reach", "solid"), needs("region", "solid"), needs("rod", "at"), needs("at", "rod"),

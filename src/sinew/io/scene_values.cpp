@@ -111,6 +111,64 @@ Type<Drive> drive(Dimension dimension) {
   return {read, [=] { return any_of({value.schema(), Json{{"const", "external"}}, table.schema()}); }};
 }
 
+Type<Drive> motor_drive(Dimension dimension) {
+  const Type<Drive> any = drive(dimension);
+  const auto read = [=](const At& at) -> Drive {
+    if (at.is(Node::Kind::scalar) && at.node().text == "inverse") return Sought{};
+    return any.read(at);
+  };
+  return {read, [=] { return any_of({any.schema(), Json{{"const", "inverse"}}}); }};
+}
+
+Type<Span> span(Dimension dimension) {
+  const Type<double> value = quantity(dimension);
+  const Type<std::vector<double>> pair = list<double>("values [least, most]", value, {2, 2});
+  const Type<Span> open =
+      map<Span>({"limits",
+                 {field<Span>({"least", optional, fmt::format("the least [{}]", si_unit(dimension)), "0"}, &Span::least,
+                              Type<double>{value.read, value.schema}),
+                  field<Span>({"most", optional, fmt::format("the most [{}]", si_unit(dimension)), "10"}, &Span::most,
+                              Type<double>{value.read, value.schema})},
+                 {at_least_one({"least", "most"})}});
+  const auto read = [=](const At& at) {
+    Span own;
+    if (at.is(Node::Kind::map)) {
+      own = open.read(at);
+    } else {
+      const std::vector<double> values = pair.read(at);
+      own = {values[0], values[1]};
+    }
+    if (!(own.least <= own.most)) at.refuse("has its least above its most", "give the least first");
+    return own;
+  };
+  return {read, [=] { return any_of({pair.schema(), open.schema()}); }};
+}
+
+Type<Track> track(Dimension dimension, int components) {
+  const Type<double> one = quantity(dimension);
+  const Type<Vec3> three = vec3(dimension);
+  const auto read_value = [=](const At& at) -> Eigen::VectorXd {
+    if (components == 3) return three.read(at);
+    return Eigen::VectorXd::Constant(1, one.read(at));
+  };
+  const auto schema = [=] { return components == 3 ? three.schema() : one.schema(); };
+  const Type<Eigen::VectorXd> value = {read_value, schema};
+  const Type<Track> table = map<Track>(
+      {"a table over time",
+       {field<Track>({"times", required, "the ascending times of the values [s]", "[0, 1]"}, &Track::times, times()),
+        field<Track>(
+            {"values", required, fmt::format("the value at each time [{}], linear in between", si_unit(dimension)),
+             components == 3 ? "[[0, 0, 0], [0, 10 mm, 0]]" : "[0, 1]"},
+            &Track::values, list<Eigen::VectorXd>("values, one per time", value, {1}))},
+       {},
+       [](const Track& t, const At& at) { check_one_per_time(t.values.size(), t.times.size(), at.child("values")); }});
+  const auto read = [=](const At& at) {
+    if (at.is(Node::Kind::map)) return table.read(at);
+    return Track{{0.0}, {value.read(at)}};
+  };
+  return {read, [=] { return any_of({value.schema(), table.schema()}); }};
+}
+
 Type<std::variant<int, std::vector<double>>> count_or_lengths(int least, bool from_zero) {
   using Value = std::variant<int, std::vector<double>>;
   const Type<int> count = whole_number(least, 10000);

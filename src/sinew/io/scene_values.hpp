@@ -18,6 +18,12 @@ Type<std::filesystem::path> file_name();
 Type<std::vector<double>> times();               ///< ascending
 Type<std::vector<double>> lengths(Count count);  ///< ascending, not negative
 Type<Drive> drive(Dimension dimension);
+/// The same of a motor, of which the command may be `inverse`.
+Type<Drive> motor_drive(Dimension dimension);
+/// [least, most], or a map with one of them.
+Type<Span> span(Dimension dimension);
+/// Numbers over time: of three components, or of one.
+Type<Track> track(Dimension dimension, int components);
 
 /// One value, or a pair of values for the two ends.
 Type<Taper> taper(Dimension dimension, Range range);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -19,14 +20,15 @@ std::string cell(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string header_row(const std::vector<std::string>& signal_names) {
-  std::string row = "time,status,newton";
+std::string header_row(const std::vector<std::string>& signal_names, bool targets) {
+  std::string row = std::string("time,status,newton") + (targets ? ",targets" : "");
   for (const std::string& name : signal_names) row += "," + cell(name);
   return row + "\n";
 }
 
-std::string row_of(const RecordedStep& step) {
+std::string row_of(const RecordedStep& step, bool targets) {
   std::string row = fmt::format("{:.17g},{},{}", step.time, cell(step.status), step.newton);
+  if (targets) row += "," + cell(step.targets);
   for (const double value : step.signals) fmt::format_to(std::back_inserter(row), ",{:.17g}", value);
   return row + "\n";
 }
@@ -34,8 +36,10 @@ std::string row_of(const RecordedStep& step) {
 }  // namespace
 
 void write_signals_csv(const std::filesystem::path& path, const Recording& recording) {
-  std::string text = header_row(recording.header.signal_names);
-  for (const RecordedStep& step : recording.steps) text += row_of(step);
+  const bool targets = std::any_of(recording.steps.begin(), recording.steps.end(),
+                                   [](const RecordedStep& step) { return !step.targets.empty(); });
+  std::string text = header_row(recording.header.signal_names, targets);
+  for (const RecordedStep& step : recording.steps) text += row_of(step, targets);
   AppendFile(path, AppendFile::Start::empty).append(text);
 }
 

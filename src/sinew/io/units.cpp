@@ -74,6 +74,9 @@ constexpr std::array all_units = std::to_array<Unit>({
     {"m/s", velocity},
     {"deg/s", turning, std::numbers::pi, 180.0},
     {"rad/s", turning},
+    {"mN/s", force_rate, 1.0, 1e3},
+    {"N/s", force_rate},
+    {"kN/s", force_rate, 1e3},
 });
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
@@ -163,6 +166,8 @@ std::string_view name(Dimension dimension) {
       return "a velocity";
     case turning:
       return "an angular velocity";
+    case force_rate:
+      return "a rate of force";
   }
   return "";
 }
@@ -203,6 +208,8 @@ std::string_view si_unit(Dimension dimension) {
       return "m/s";
     case turning:
       return "rad/s";
+    case force_rate:
+      return "N/s";
   }
   return "";
 }

@@ -26,14 +26,15 @@ enum class Dimension {
   line_density,
   line_load,
   velocity,
-  turning
+  turning,
+  force_rate
 };
 
 inline constexpr std::array all_dimensions = {
     Dimension::number,   Dimension::length,    Dimension::mass,      Dimension::time,         Dimension::angle,
     Dimension::force,    Dimension::torque,    Dimension::pressure,  Dimension::density,      Dimension::acceleration,
     Dimension::rate,     Dimension::curvature, Dimension::viscosity, Dimension::line_density, Dimension::line_load,
-    Dimension::velocity, Dimension::turning};
+    Dimension::velocity, Dimension::turning,   Dimension::force_rate};
 
 /// "a length"
 std::string_view name(Dimension dimension);

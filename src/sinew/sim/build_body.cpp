@@ -294,8 +294,14 @@ void build_pairs(Model& model) {
   if (model.pairs.empty()) return;
   if (model.scene.newton.precision == linalg::Precision::float32)
     reject("newton.precision", "single", "contact needs double precision", "leave `precision` out");
-  if (model.scene.analysis != Analysis::dynamic)
-    reject("analysis", "", "contact is computed in dynamic scenes alone",
+  const bool still = model.scene.analysis == Analysis::quasi_static;
+  const bool loose = std::any_of(model.pairs.begin(), model.pairs.end(), [](const PairModel& pair) {
+    return pair.a.kind == Kind::body || pair.b.kind == Kind::body;
+  });
+  if (model.scene.analysis != Analysis::dynamic && (!still || loose))
+    reject("analysis", "",
+           loose ? "loose bodies that touch are computed in dynamic scenes alone"
+                 : "contact is computed in dynamic and quasi-static scenes alone",
            "write `analysis: dynamic`, and damping that brings it to rest; or `off: true` for pairs that never meet");
   for (RodModel& rod : model.rods) rod.touching = points_along(rod);
   for (SolidModel& solid : model.solids) solid.skin = contact::make_mesh(solid.body.rest, solid.surface);

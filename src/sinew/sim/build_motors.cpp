@@ -25,6 +25,32 @@ rod::Tendon make_tendon(const Model& model, int rod, const Tendon& tendon, const
   return own;
 }
 
+void check_span(const Span& span, const std::string& path, const char* unit) {
+  if (!(span.least <= span.most))
+    reject(path, "[" + text(span.least) + ", " + text(span.most) + "] " + unit, "the least is above the most",
+           "give the least first");
+}
+
+/// What a motor can do, and where it is sought that it can do something.
+void set_limits(const Actuator& actuator, const std::string& path, ActuatorModel& own) {
+  const Limits& limits = actuator.limits;
+  const bool turns = own.turns();
+  // A cable that would have to push goes slack instead.
+  const bool pulls = actuator.tendon || (!turns && !actuator.axis);
+  own.force = limits.force.value_or(Span{pulls ? 0.0 : -INFINITY, INFINITY});
+  own.position = limits.displacement;
+  check_span(own.force, path + ".limits." + (turns ? "torque" : "force"), turns ? "N m" : "N");
+  check_span(own.position, path + ".limits." + (turns ? "angle" : "displacement"), turns ? "rad" : "m");
+  own.speed = limits.speed.value_or(INFINITY);
+  own.force_rate = limits.force_rate.value_or(INFINITY);
+  for (const double rate : {own.speed, own.force_rate}) {
+    if (!(rate > 0.0))
+      reject(path + ".limits." + (rate == own.speed ? "speed" : "force_rate"), text(rate), "must be greater than 0",
+             "leave it out where nothing limits it");
+  }
+  own.preferred = actuator.preferred.value_or(std::clamp(0.0, own.force.least, own.force.most));
+}
+
 }  // namespace
 
 void build_actuator(Model& model, const std::string& name, const Actuator& actuator) {
@@ -41,6 +67,7 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
            "force and displacement translate, torque and angle rotate");
   }
   check_drive(actuator.drive, path);
+  set_limits(actuator, path, own);
   if (actuator.tendon) {
     if (own.line.rod < 0 || turns)
       reject(path + ".tendon", name, "a tendon pulls inside a Cosserat rod",

@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <cmath>
+
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/effectors.hpp"
 
 namespace sinew::building {
 
@@ -33,6 +37,8 @@ void on_solid(Model& model, const Output& output, const std::string& path, Outpu
     model.warnings.push_back(path + ": the point lies " + text(own.where.distance) +
                              " m outside the mesh and is extrapolated");
   }
+  for (int i = 0; i < 3; ++i)
+    own.axes[i] = solid::embed_vector(solid.body.rest, solid.body.cells, own.where, Vec3::Unit(i));
 }
 
 void of_a_pair(const Model& model, const Output& output, const std::string& path, OutputModel& own) {
@@ -68,8 +74,9 @@ void build_output(Model& model, const std::string& name, const Output& output) {
   if (output.solid) {
     on_solid(model, output, path, own);
   } else if (output.body) {
-    if (output.quantity != Quantity::position && output.quantity != Quantity::force)
-      reject(path + ".quantity", "", "is not known of rigid bodies", "write `position` or `force`");
+    if (output.quantity != Quantity::position && output.quantity != Quantity::orientation &&
+        output.quantity != Quantity::force)
+      reject(path + ".quantity", "", "is not known of rigid bodies", "write `position`, `orientation` or `force`");
     own.body = find(model.scene.bodies, *output.body, path + ".body", "rigid body");
   } else if (!output.between.empty()) {
     of_a_pair(model, output, path, own);
@@ -82,12 +89,79 @@ void build_output(Model& model, const std::string& name, const Output& output) {
   model.outputs.push_back(own);
 }
 
-void build_effector(Model& model, const std::string& name, int number) {
-  const std::string path = "effectors." + std::to_string(number);
-  const OutputModel& output = model.outputs[find(model.scene.outputs, name, path, "output")];
-  if (output.solid < 0 || output.quantity != Quantity::position)
-    reject(path, name, "is no position of a point of a solid", "name an output of `{solid: NAME, point: [x, y, z]}`");
-  model.effectors.push_back({output.solid, output.where});
+void build_target(Model& model, int number) {
+  const Target& target = model.scene.targets[number];
+  const std::string path = "targets." + target.output;
+  EffectorModel own;
+  own.output = find(model.scene.outputs, target.output, path, "output");
+  const OutputModel& output = model.outputs[own.output];
+  switch (output.quantity) {
+    case Quantity::position:
+    case Quantity::orientation:
+      break;
+    case Quantity::strain:
+      if (output.rod < 0) reject(path, target.output, "is a strain of a solid", "take one of a rod, or a position");
+      own.size = 1;
+      own.strain = static_cast<int>(target.strain);
+      break;
+    default:
+      reject(path, target.output, "is nothing that motors can be asked for",
+             "name an output of `position`, `orientation` or, of a rod, `strain`, or `between` two that touch");
+  }
+  if (output.pair >= 0) {
+    own.size = 1;
+    model.pairs[output.pair].sought = true;
+  }
+  if (!model.effectors.empty()) own.first = effector_size(model);
+  const double unit = measure_of(model, own).unit;
+  if (!target.weights.empty() && target.weights.size() != static_cast<std::size_t>(own.size))
+    reject(path + ".weights", std::to_string(target.weights.size()) + " numbers",
+           "must be " + std::to_string(own.size) + ", one for each component", "0 leaves a component free");
+  own.weights.setConstant(own.size, 1.0 / unit);
+  for (std::size_t i = 0; i < target.weights.size(); ++i) {
+    if (!(target.weights[i] >= 0.0 && std::isfinite(target.weights[i])))
+      reject(path + ".weights", text(target.weights[i]), "must not be negative", "0 leaves a component free");
+    own.weights[static_cast<Eigen::Index>(i)] *= target.weights[i];
+  }
+  if (!(own.weights.maxCoeff() > 0.0))
+    reject(path + ".weights", "0", "asks for nothing", "give one component a weight above 0");
+  own.tolerance = target.tolerance.value_or(0.1 * unit);
+  if (!(own.tolerance > 0.0))
+    reject(path + ".tolerance", text(own.tolerance), "must be greater than 0", "leave it out, or give 0.1 mm");
+  if (const Track* track = std::get_if<Track>(&target.at)) {
+    if (track->times.empty() || track->values.size() != track->times.size())
+      reject(path + ".at", std::to_string(track->values.size()) + " values", "must be one for each time",
+             "give as many values as times");
+    for (const Eigen::VectorXd& value : track->values) {
+      if (value.size() != own.size || !value.allFinite())
+        reject(path + ".at", std::to_string(value.size()) + " numbers",
+               "must be " + std::to_string(own.size) + " finite numbers at every time", "give one for each component");
+    }
+  }
+  if (output.solid >= 0) {
+    own.watched = static_cast<int>(model.watched.size());
+    if (output.quantity == Quantity::orientation) {
+      for (const solid::EmbeddedPoint& axis : output.axes) model.watched.push_back({output.solid, axis});
+    } else {
+      model.watched.push_back({output.solid, output.where});
+    }
+  }
+  model.effectors.push_back(own);
+}
+
+void check_targets(const Model& model) {
+  const auto first = std::find_if(model.actuators.begin(), model.actuators.end(),
+                                  [](const ActuatorModel& actuator) { return actuator.sought(); });
+  if (model.effectors.empty()) {
+    if (first == model.actuators.end()) return;
+    reject("actuators." + first->name, "inverse", "is to be found, but there is nothing that it is to do",
+           "add `targets: {OUTPUT: {at: [x, y, z]}}`, or say what drives it");
+  }
+  if (first == model.actuators.end())
+    reject("targets", "", "no actuator is free to bring an output there",
+           "write `force: inverse` or `displacement: inverse` for some");
+  if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static)
+    reject("analysis", "", "targets are met over time", "write `dynamic` or `quasi_static`");
 }
 
 }  // namespace sinew::building

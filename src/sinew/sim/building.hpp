@@ -120,7 +120,9 @@ void build_coupling(Model& model, int number, const Glue& glue);
 void build_actuator(Model& model, const std::string& name, const Actuator& actuator);
 void build_load(Model& model, const std::string& name, const Load& load);
 void build_output(Model& model, const std::string& name, const Output& output);
-void build_effector(Model& model, const std::string& name, int number);
+void build_target(Model& model, int number);
+/// Targets and sought actuators need each other.
+void check_targets(const Model& model);
 
 /// Ties the axes of a rod's cross-section to the solid that holds it, position left to others.
 void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Vec3& point,

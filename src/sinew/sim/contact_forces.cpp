@@ -231,20 +231,60 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     rows_ = iterate.lambda + solution.dlambda + answer_.dlambda;
     if (rubbing_.empty()) break;
   }
-  const Eigen::VectorXd more = lambda_ - old_;
+  change.contacts.clear();
+  for (const Touch& touch : room.touches) change.contacts.push_back({touch.force, Vec3::Zero(), touch.nearest.normal});
+  change.frictions.assign(rubbing_.size(), 0.0);
+  add(room, free, lambda_ - old_, solution, change);
+}
+
+/// What `more` of forces, which `answer_` is the response to, adds.
+void ContactForces::add(const ContactRoom& room, std::vector<FreeMotion>& free, const Eigen::VectorXd& more,
+                        solve::CoupledSolution& solution, ContactChange& change) {
   solution += answer_;
   solution.ok = solution.ok && answer_.ok;
   for (std::size_t s = 0; s < free.size(); ++s) {
     if (!rows_of_[s].empty()) free[s].add_contact_forces(more(rows_of_[s]));
   }
-  change.contacts.clear();
-  for (const Touch& touch : room.touches) change.contacts.push_back({touch.force, Vec3::Zero(), touch.nearest.normal});
   for (std::size_t i = 0; i < touching_.size(); ++i)
-    change.contacts[touching_[i]].more =
+    change.contacts[touching_[i]].more +=
         room.touches[touching_[i]].frame * more.segment<3>(static_cast<Eigen::Index>(3 * i));
-  change.frictions.resize(rubbing_.size());
   for (std::size_t i = 0; i < rubbing_.size(); ++i)
-    change.frictions[i] = more[static_cast<Eigen::Index>(3 * (touching_.size() + i) + 1)];
+    change.frictions[i] += more[static_cast<Eigen::Index>(3 * (touching_.size() + i) + 1)];
+}
+
+void ContactForces::change(const StepContext& context, const ContactRoom& room, std::vector<FreeMotion>& free,
+                           solve::CoupledFactor& factor, const Eigen::VectorXd& moved, const Eigen::VectorXd& lambda,
+                           solve::CoupledSolution& solution, ContactChange& change) {
+  problem_.b += moved;
+  const Eigen::VectorXd more = lambda - lambda_;
+  lambda_ = lambda;
+  report_.left = solve::residual(problem_, lambda_);
+  respond(context, free, factor, more);
+  add(room, free, more, solution, change);
+}
+
+void ContactForces::motion_of(const StepContext& context, std::vector<FreeMotion>& free,
+                              const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) {
+  u.setZero();
+  motion(solution, u);
+  for (std::size_t s = 0; s < free.size(); ++s) {
+    if (rows_of_[s].empty()) continue;
+    own_ = free[s].coupled_motion(context.model.solids[s], context.model, solution.dlambda);
+    for (std::size_t i = 0; i < rows_of_[s].size(); ++i) u[rows_of_[s][i]] += own_[static_cast<Eigen::Index>(i)];
+  }
+}
+
+const solve::CoupledSolution& ContactForces::response_to(const StepContext& context, std::vector<FreeMotion>& free,
+                                                         solve::CoupledFactor& factor, const Eigen::VectorXd& forces) {
+  respond(context, free, factor, forces);
+  return answer_;
+}
+
+void ContactForces::watched_motion(const StepContext& context, const std::vector<FreeMotion>& free,
+                                   const Eigen::VectorXd& forces, Eigen::Ref<Eigen::VectorXd> motion) const {
+  for (std::size_t s = 0; s < free.size(); ++s) {
+    if (!rows_of_[s].empty()) free[s].add_watched_motion(context.model.solids[s], forces(rows_of_[s]), motion);
+  }
 }
 
 double ContactForces::error(const StepContext& context, const State& iterate, const ContactRoom& room) const {

@@ -33,6 +33,18 @@ class ContactForces {
   /// Finds the forces that go with the solution so far, and adds to it what they change.
   void solve(const StepContext& context, const State& iterate, const ContactRoom& room, std::vector<FreeMotion>& free,
              solve::CoupledFactor& factor, solve::CoupledSolution& solution, ContactChange& change);
+  /// Other forces, where the solution has been changed since by what moves the rows by `moved` [m].
+  void change(const StepContext& context, const ContactRoom& room, std::vector<FreeMotion>& free,
+              solve::CoupledFactor& factor, const Eigen::VectorXd& moved, const Eigen::VectorXd& lambda,
+              solve::CoupledSolution& solution, ContactChange& change);
+  /// How a solution of the reduced problem, volumes included but without forces on them, moves the rows [m].
+  void motion_of(const StepContext& context, std::vector<FreeMotion>& free, const solve::CoupledSolution& solution,
+                 Eigen::Ref<Eigen::VectorXd> u);
+  /// What forces at the rows change of the reduced solution, and of watched points (added) by themselves.
+  const solve::CoupledSolution& response_to(const StepContext& context, std::vector<FreeMotion>& free,
+                                            solve::CoupledFactor& factor, const Eigen::VectorXd& forces);
+  void watched_motion(const StepContext& context, const std::vector<FreeMotion>& free, const Eigen::VectorXd& forces,
+                      Eigen::Ref<Eigen::VectorXd> motion) const;
   /// [m] how far the forces of an iterate are from what the laws ask for, told as displacements by the D of the last
   /// `prepare`; that of the first is not known, and infinite.
   double error(const StepContext& context, const State& iterate, const ContactRoom& room) const;
@@ -40,7 +52,12 @@ class ContactForces {
   /// Of the problems since they were last forgotten, without their contacts.
   const ContactReport& report() const { return report_; }
   void forget() { report_ = {}; }
+  /// Of the step's contacts and, after them, rods that rub; its forces `found`, and those of the iterate it `had`.
   const solve::CoulombProblem& problem() const { return problem_; }
+  const Eigen::VectorXd& found() const { return lambda_; }
+  const Eigen::VectorXd& had() const { return old_; }
+  /// Which contacts of the iterate these are.
+  const std::vector<int>& touching() const { return touching_; }
 
  private:
   /// What moves one contact, in its frame: three rows over some unknowns.
@@ -72,6 +89,8 @@ class ContactForces {
   void add_rows(const StepContext& context, const State& iterate, const ContactRoom& room, const Reduced& reduced);
   void respond(const StepContext& context, std::vector<FreeMotion>& free, solve::CoupledFactor& factor,
                const Eigen::VectorXd& lambda);
+  void add(const ContactRoom& room, std::vector<FreeMotion>& free, const Eigen::VectorXd& more,
+           solve::CoupledSolution& solution, ContactChange& change);
   void push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
             solve::RightSide& side);
   void motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) const;

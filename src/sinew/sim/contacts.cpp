@@ -44,6 +44,13 @@ Vec3 was(const ContactSide& side, const std::array<double, 3>& weights, const Ve
   return p - moved;
 }
 
+/// Part of the model's size within which a pair that is to be pressed together is watched.
+constexpr double kSoughtWithin = 0.1;
+/// And within which all are, in a step from one equilibrium to the next.
+constexpr double kStillWithin = 0.1;
+/// Of such a pair so many of the nearest contacts take part, closed or not.
+constexpr std::size_t kSoughtContacts = 40;
+
 bool earlier(const ContactState& a, const ContactState& b) {
   return a.pair < b.pair || (a.pair == b.pair && a.part < b.part);
 }
@@ -130,6 +137,7 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
 
 /// The gap that a contact must have at the end of the step.
 double least_gap(const StepContext& context, double restitution, const Beginning& now) {
+  if (context.rate == 0.0) return 0.0;
   const double gravity = context.gravity.norm();
   if (now.gap < 0.0) {
     // Bodies that overlap are lifted no faster than a fall from that height, or in some fifty steps without gravity.
@@ -161,7 +169,25 @@ double alarm_distance(const StepContext& context) {
     const double far = (apply(moved, middle) - middle).norm() + lie::log(moved.R).norm() * context.model.size;
     fastest = std::max(fastest, far / context.h);
   }
-  return 2.0 * context.h * (fastest + context.gravity.norm() * context.h) + 2e-3 * context.model.size;
+  const bool moves = context.rate > 0.0;
+  const double fall = moves ? context.gravity.norm() * context.h : 0.0;
+  return 2.0 * context.h * (fastest + fall) + (moves ? 2e-3 : kStillWithin) * context.model.size;
+}
+
+bool beyond_alarm(const StepContext& context, const State& end) {
+  if (context.model.pairs.empty() || context.rate > 0.0) return false;
+  std::vector<rod::Configuration> start, now;
+  configure_touching(context.model, rod_bases(context.model, context.start), context.start, start);
+  configure_touching(context.model, context.bases, end, now);
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < end.solids.size(); ++i)
+    farthest = std::max(farthest, (end.solids[i].x - context.start.solids[i].x).colwise().norm().maxCoeff());
+  for (std::size_t i = 0; i < context.model.rods.size(); ++i) {
+    if (!in_a_pair(context.model, {Kind::rod, static_cast<int>(i)})) continue;
+    for (const double s : context.model.rods[i].touching)
+      farthest = std::max(farthest, (rod::position(now[i], s) - rod::position(start[i], s)).norm());
+  }
+  return farthest > alarm_distance(context);
 }
 
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room) {
@@ -172,15 +198,17 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   std::vector<ContactState> found;
   room.surfaces.fit(start);
   const double alarm = alarm_distance(context);
-  const double depth = 2.0 * context.gravity.norm() * context.h * context.h + 2e-3 * context.model.size;
+  const double fall = context.rate > 0.0 ? context.gravity.norm() * context.h * context.h : 0.0;
+  const double depth = 2.0 * fall + 2e-3 * context.model.size;
+  const double far = std::max(alarm, kSoughtWithin * context.model.size);
   for (std::size_t i = 0; i < context.model.pairs.size(); ++i)
-    search(start, alarm, depth, room.surfaces, static_cast<int>(i), found);
+    search(start, context.model.pairs[i].sought ? far : alarm, depth, room.surfaces, static_cast<int>(i), found);
   std::stable_sort(found.begin(), found.end(), earlier);
   // What was there keeps its force.
-  auto old = context.start.contacts.begin();
+  auto old = iterate.contacts.begin();
   for (ContactState& own : found) {
-    while (old != context.start.contacts.end() && earlier(*old, own)) ++old;
-    if (old == context.start.contacts.end() || earlier(own, *old)) continue;
+    while (old != iterate.contacts.end() && earlier(*old, own)) ++old;
+    if (old == iterate.contacts.end() || earlier(own, *old)) continue;
     own.force = old->force;
     own.normal = old->normal;
   }
@@ -188,13 +216,23 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   room.least.clear();
   room.facings.clear();
   room.playing.clear();
-  const double fall = context.gravity.norm() * context.h * context.h;
+  std::vector<std::vector<std::pair<double, int>>> sought(context.model.pairs.size());
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
     const Beginning now = beginning(context, own, start);
     room.least.push_back(least_gap(context, context.model.pairs[own.pair].restitution, now));
     room.facings.push_back(contact::facing(start.placed(own.a), start.placed(own.b)));
-    if (!own.force.isZero() || now.gap + now.approach * context.h < fall) room.playing.push_back(static_cast<int>(i));
+    const auto number = static_cast<int>(i);
+    if (!own.force.isZero() || now.gap + now.approach * context.h < fall) room.playing.push_back(number);
+    if (context.model.pairs[own.pair].sought) sought[own.pair].emplace_back(now.gap, number);
+  }
+  for (auto& near : sought) {
+    std::sort(near.begin(), near.end());
+    if (near.size() > kSoughtContacts) near.resize(kSoughtContacts);
+    for (const auto& [gap, number] : near) {
+      const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), number);
+      if (place == room.playing.end() || *place != number) room.playing.insert(place, number);
+    }
   }
 }
 
@@ -214,7 +252,7 @@ std::vector<Overlap> overlaps(const Model& model, const State& start) {
   return found;
 }
 
-void finish_contacts(const ContactRoom& room, State& next) {
+void finish_contacts(const StepContext& context, const ContactRoom& room, State& next) {
   for (std::size_t i = 0; i < next.contacts.size(); ++i) {
     ContactState& own = next.contacts[i];
     const Touch& touch = room.touches[i];
@@ -227,8 +265,25 @@ void finish_contacts(const ContactRoom& room, State& next) {
   // What the solver left of forces that went is not a contact.
   double largest = 0.0;
   for (const ContactState& own : next.contacts) largest = std::max(largest, own.force.dot(own.normal));
-  std::erase_if(next.contacts,
-                [largest](const ContactState& own) { return !(own.force.dot(own.normal) > 1e-12 * largest); });
+  // Of what is sought and does not touch yet, the nearest is kept.
+  std::vector<const ContactState*> kept(context.model.pairs.size(), nullptr);
+  for (ContactState& own : next.contacts) {
+    if (own.force.dot(own.normal) > 1e-12 * largest) continue;
+    own.force.setZero();
+    if (context.model.pairs[own.pair].sought && (!kept[own.pair] || own.gap < kept[own.pair]->gap))
+      kept[own.pair] = &own;
+  }
+  for (const ContactState& own : next.contacts) {
+    if (!own.force.isZero()) kept[own.pair] = nullptr;
+  }
+  std::vector<ContactState> near;
+  for (const ContactState* own : kept) {
+    if (own) near.push_back(*own);
+  }
+  std::erase_if(next.contacts, [](const ContactState& own) { return own.force.isZero(); });
+  if (near.empty()) return;
+  next.contacts.insert(next.contacts.end(), near.begin(), near.end());
+  std::stable_sort(next.contacts.begin(), next.contacts.end(), earlier);
 }
 
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room) {

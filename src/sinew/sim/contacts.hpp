@@ -36,14 +36,15 @@ struct ContactRoom {
   std::vector<double> least;
 };
 
-/// Finds what may touch within the step, starting from where the step starts; forces of those that were there are kept.
+/// Finds what may touch within the step, starting from where the step starts; forces that the iterate has are kept.
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room);
 
 /// Where the contacts of an iterate are.
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);
 
-/// Writes where contacts are into an accepted state, and drops those that are open.
-void finish_contacts(const ContactRoom& room, State& next);
+/// Writes where contacts are into an accepted state, and drops those that are open, but for the nearest of a pair that
+/// is sought and does not touch.
+void finish_contacts(const StepContext& context, const ContactRoom& room, State& next);
 
 /// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,
 /// -1 for what feels the opposite.
@@ -63,5 +64,9 @@ std::vector<Overlap> overlaps(const Model& model, const State& start);
 
 /// How far parts may be apart at the start of a step to be looked at [m].
 double alarm_distance(const StepContext& context);
+
+/// Whether an equilibrium is further from the start of its step than contacts have been looked for; motion shows that
+/// by its speed beforehand.
+bool beyond_alarm(const StepContext& context, const State& end);
 
 }  // namespace sinew

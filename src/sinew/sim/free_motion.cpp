@@ -105,7 +105,7 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   const Clock clock(times.compliance);
   volume.at.clear();
   for (const int k : kept_) volume.at.push_back(row_of(model, context.model, k));
-  Eigen::MatrixXd& W = model.effectors.empty() ? volume.W : compliance_;
+  Eigen::MatrixXd& W = model.watched.empty() ? volume.W : compliance_;
   factor_->kept_compliance(W);
   rim_.clear();
   N_.resize(0, 0);
@@ -113,7 +113,7 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   Z_.resize(0, 0);
   if (kind == solid::Tangent::exact) add_rim(context, iterate, number, W);
   volume.symmetric = Z_.size() == 0;
-  if (!model.effectors.empty()) {
+  if (!model.watched.empty()) {
     const auto& place = factor_->plan().border;
     const auto rows = static_cast<Eigen::Index>(kept_.size());
     volume.W.resize(rows, rows);
@@ -201,16 +201,16 @@ void FreeMotion::gather(const SolidModel& model, const Model& whole, const Eigen
     rows_.segment<3>(static_cast<Eigen::Index>(3 * k)) = dlambda.segment<3>(whole.solid_rows[model.rows[k]].row);
 }
 
-void FreeMotion::effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
-                                 bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
-  if (model.effectors.empty()) return;
+void FreeMotion::watched_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda,
+                                bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
+  if (model.watched.empty()) return;
   gather(model, whole, dlambda);
-  for (std::size_t k = 0; k < model.effectors.size(); ++k) {
+  for (std::size_t k = 0; k < model.watched.size(); ++k) {
     for (int i = 0; i < 3; ++i) {
       const auto own = static_cast<Eigen::Index>(3 * (model.rows.size() + k)) + i;
       double sum = pushed ? free_[own] : 0.0;
       for (const int other : kept_) sum += compliance_of(static_cast<int>(own), other) * rows_[other];
-      motion[3 * model.effectors[k] + i] = sum;
+      motion[3 * model.watched[k] + i] = sum;
     }
   }
 }
@@ -253,6 +253,13 @@ void FreeMotion::push_contacts(const SolidModel& model, const Model& whole, cons
   const Eigen::VectorXd moved = coupled_ * forces;
   for (std::size_t k = 0; k < model.rows.size(); ++k)
     c.segment<3>(whole.solid_rows[model.rows[k]].row) += moved.segment<3>(static_cast<Eigen::Index>(3 * k));
+}
+
+void FreeMotion::add_watched_motion(const SolidModel& model, const Eigen::VectorXd& forces,
+                                    Eigen::Ref<Eigen::VectorXd> motion) const {
+  for (std::size_t k = 0; k < model.watched.size(); ++k)
+    motion.segment<3>(3 * model.watched[k]) +=
+        coupled_.middleRows<3>(static_cast<Eigen::Index>(3 * (model.rows.size() + k))) * forces;
 }
 
 void FreeMotion::add_contact_forces(const Eigen::VectorXd& forces) {

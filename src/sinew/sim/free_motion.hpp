@@ -39,9 +39,9 @@ class FreeMotion {
   /// unbalanced. H dx, without dlambda, is added to the violations c.
   void push_own(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
   void push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c);
-  /// Motion [m] of the volume's effectors, three numbers each: that of the push, and what multipliers add.
-  void effector_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, bool pushed,
-                       Eigen::Ref<Eigen::VectorXd> motion);
+  /// Motion [m] of the volume's watched points, three numbers each: that of the push, and what multipliers add.
+  void watched_motion(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda, bool pushed,
+                      Eigen::Ref<Eigen::VectorXd> motion);
   /// Rows of contacts over the unknowns, beside those of the plan, until the next factor. Skew tangents of pressures
   /// are left out of what they feel.
   void set_contact_rows(const linalg::SparseFactor::Rows& rows);
@@ -53,6 +53,9 @@ class FreeMotion {
   /// How forces on them move the rows of couplings: added to the violations c.
   void push_contacts(const SolidModel& model, const Model& whole, const Eigen::VectorXd& forces,
                      Eigen::VectorXd& c) const;
+  /// How they move watched points: added.
+  void add_watched_motion(const SolidModel& model, const Eigen::VectorXd& forces,
+                          Eigen::Ref<Eigen::VectorXd> motion) const;
   /// Adds such forces to what was pushed.
   void add_contact_forces(const Eigen::VectorXd& forces);
   /// And the second: 3 x nodes displacement of the volume (zero where it is held).
@@ -66,11 +69,11 @@ class FreeMotion {
  private:
   void plan(const SolidModel& model);
   void take_push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
-  /// The row of the scene that is a border row, not an effector's.
+  /// The row of the scene that is a border row, not a watched point's.
   static int row_of(const SolidModel& model, const Model& whole, int border_row);
-  /// What a force on border row `other` moves an effector's.
+  /// What a force on border row `other` moves a watched one.
   double compliance_of(int one, int other) const;
-  /// Forces of the model's rows, zeros for effectors.
+  /// Forces of the model's rows, zeros for watched points.
   void gather(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda);
   void add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W);
   /// V y.
@@ -78,7 +81,7 @@ class FreeMotion {
 
   std::optional<linalg::SparseFactor> factor_;
   std::vector<int> kept_;       ///< border rows that are rows of the scene, in the order in which they are kept
-  Eigen::MatrixXd compliance_;  ///< where there are effectors: of all border rows, as they are kept
+  Eigen::MatrixXd compliance_;  ///< where points are watched: of all border rows, as they are kept
   Eigen::VectorXd free_;        ///< motion of the border rows by the push
   std::vector<int> rim_;        ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;   ///< V = 1 - Y Z Y^T S; empty where A is symmetric

@@ -2,116 +2,450 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
+#include <cstdio>
+#include <numbers>
 #include <stdexcept>
 
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/statics.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
 
 namespace {
 
-/// Part of the effectors' own compliance that increments of forces are held by: redundant actuators share what there is
-/// to do, and a goal within reach is still met to about this part of the way to it.
-constexpr double kProximal = 1e-9;
+/// [mm, deg, ...] increments that move effectors no more than this end a search; goals are then met to about that.
+constexpr double kSettled = 1e-5;
 
 void check(const Model& model, const Goal& goal) {
-  const std::size_t n = model.actuators.size();
-  if (goal.positions.size() != model.effectors.size() || goal.least.size() != n || goal.most.size() != n)
-    throw std::invalid_argument("inverse_step: a goal for each effector and bounds for each actuator are needed");
-  for (const Vec3& x : goal.positions) {
-    if (!x.allFinite()) throw std::invalid_argument("inverse_step: a goal is not finite");
+  if (model.sought.empty() || model.effectors.empty())
+    throw std::invalid_argument("inverse_step: the scene has no targets, or no actuator is sought");
+  if (goal.at.size() != effector_size(model))
+    throw std::invalid_argument("inverse_step: a goal for each component of the effectors is needed");
+  if (!goal.at.allFinite()) throw std::invalid_argument("inverse_step: a goal is not finite");
+  if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static)
+    throw std::invalid_argument("inverse_step: of dynamic and quasi-static scenes only");
+}
+
+/// The four kinds of limits of a motor, as rows.
+struct Kind {
+  Limit least, most;
+  bool of_force, of_rate;
+};
+constexpr std::array<Kind, 4> kKinds = {{{Limit::least_force, Limit::most_force, true, false},
+                                         {Limit::least_position, Limit::most_position, false, false},
+                                         {Limit::force_rate, Limit::force_rate, true, true},
+                                         {Limit::speed, Limit::speed, false, true}}};
+constexpr auto kRows = static_cast<Eigen::Index>(kKinds.size());
+
+}  // namespace
+
+void Inverse::begin(const Model& model, const State& start, const Goal& goal, double h) {
+  goal_ = goal;
+  h_ = h;
+  binding_.clear();
+  dropped_.clear();
+  start_force_.clear();
+  start_position_.clear();
+  const auto n = static_cast<Eigen::Index>(model.sought.size());
+  weights_.resize(effector_size(model));
+  for (const EffectorModel& own : model.effectors) weights_.segment(own.first, own.size) = own.weights;
+  preferred_.resize(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const int actuator = model.sought[static_cast<std::size_t>(a)];
+    start_force_.push_back(start.actuators[actuator]);
+    start_position_.push_back(motor_position(model, start, model.actuators[actuator]));
+    preferred_[a] = model.actuators[actuator].preferred;
   }
-  for (std::size_t a = 0; a < n; ++a) {
-    if (!(goal.least[a] <= goal.most[a]))
-      throw std::invalid_argument("inverse_step: bounds of actuators." + model.actuators[a].name);
+}
+
+// The step is linear in the commands and in forces at contacts: its solution is that of the commands as they are plus
+// p_a times the answer to one more unit of each, and so with forces.
+void Inverse::look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment,
+                   bool pushed) {
+  const Model& model = context.model;
+  const auto n = static_cast<Eigen::Index>(model.sought.size());
+  effector_errors(model, iterate, goal_, error_);
+  rows_.look(context, iterate, here, goal_, error_);
+  base_.resize(error_.size());
+  rows_.motion(here, increment.reduced, pushed, base_);
+  base_ += error_;
+  const Eigen::Index rows = here.touched() ? here.contact_forces().found().size() : 0;
+  responses_.resize(model.sought.size());
+  J_.resize(error_.size(), n);
+  F_.resize(n, n);
+  X_.resize(n, n);
+  problem_.B.resize(rows, n);
+  const auto tell_motors = [&](const solve::CoupledSolution& response, Eigen::Ref<Eigen::VectorXd> force,
+                               Eigen::Ref<Eigen::VectorXd> position) {
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const int motor = model.sought[static_cast<std::size_t>(b)];
+      const bool told_force = model.actuators[motor].row < 0;
+      force[b] = told_force ? 0.0 : motor_reaction(model, motor, response);
+      position[b] = told_force ? motor_motion(model, iterate, motor, response) : 0.0;
+    }
+  };
+  clear(model, unit_);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const int actuator = model.sought[static_cast<std::size_t>(a)];
+    solve::CoupledSolution& response = responses_[static_cast<std::size_t>(a)];
+    tell_motor(model, iterate, actuator, 1.0, unit_);
+    here.couple(unit_, response);
+    tell_motor(model, iterate, actuator, -1.0, unit_);
+    if (!response.ok) {
+      J_.col(a).setConstant(NAN);
+      continue;
+    }
+    rows_.motion(here, response, false, J_.col(a));
+    tell_motors(response, F_.col(a), X_.col(a));
+    (model.actuators[actuator].row < 0 ? F_ : X_)(a, a) = 1.0;
+    if (rows > 0) here.contact_motion(response, problem_.B.col(a));
   }
-  for (const ActuatorModel& actuator : model.actuators) {
-    if (actuator.row >= 0 || actuator.tendon || actuator.motion != Motion::translation)
-      throw std::invalid_argument("inverse_step: actuators." + actuator.name + " is not a force on a rod's base");
+  if (rows > 0) {
+    rows_.choose_gaps(here, problem_.B);
+    for (Eigen::Index a = 0; a < n; ++a) rows_.add_gaps(problem_.B.col(a), J_.col(a));
   }
-  if (model.scene.analysis != Analysis::dynamic) throw std::invalid_argument("inverse_step: of dynamic scenes only");
+  rows_.force_errors(here, goal_, base_);
+  L_.setZero(error_.size(), rows);
+  F_pressed_.setZero(n, rows);
+  X_pressed_.setZero(n, rows);
+  S_.resize(rows, n);
+  problem_.held.resize(rows);
+  if (rows == 0) return;
+  problem_.contacts = here.contact_forces().problem();
+  problem_.held = here.contact_forces().found();
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    forces_ = Eigen::VectorXd::Unit(rows, k);
+    const solve::CoupledSolution& response = here.press(forces_);
+    rows_.pressed(here, forces_, problem_.contacts.D.col(k), response, L_.col(k));
+    tell_motors(response, F_pressed_.col(k), X_pressed_.col(k));
+  }
+  S_ = steering_.reaction(problem_);
+}
+
+void Inverse::set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution) {
+  const Model& model = context.model;
+  const auto n = static_cast<Eigen::Index>(model.sought.size());
+  problem_.A.resize((kRows + 1) * n, n);
+  problem_.C.setZero(problem_.A.rows(), L_.cols());
+  problem_.lower.resize(problem_.A.rows());
+  problem_.upper.resize(problem_.A.rows());
+  problem_.firmness.setConstant(problem_.A.rows(), INFINITY);
+  problem_.wish.resize(n);
+  lengths_.resize(n);
+  bounds_.resize(static_cast<std::size_t>(2 * kRows * n));
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const int actuator = model.sought[static_cast<std::size_t>(a)];
+    const ActuatorModel& own = model.actuators[actuator];
+    const double told = context.command.actuators[actuator];
+    const double force = own.row < 0 ? told : iterate.lambda[own.row] + motor_reaction(model, actuator, solution);
+    const double position =
+        own.row < 0 ? motor_position(model, iterate, own) + motor_motion(model, iterate, actuator, solution) : told;
+    problem_.wish[a] = preferred_[a] - force;
+    for (Eigen::Index k = 0; k < kRows; ++k) {
+      const Kind& kind = kKinds[static_cast<std::size_t>(k)];
+      const Eigen::Index row = k * n + a;
+      problem_.A.row(row) = kind.of_force ? F_.row(a) : X_.row(a);
+      problem_.C.row(row) = kind.of_force ? F_pressed_.row(a) : X_pressed_.row(a);
+      const double now = kind.of_force ? force : position;
+      Span span = kind.of_force ? own.force : own.position;
+      if (kind.of_rate) {
+        const double start = (kind.of_force ? start_force_ : start_position_)[static_cast<std::size_t>(a)];
+        const double rate = kind.of_force ? own.force_rate : own.speed, most = h_ > 0.0 ? rate * h_ : INFINITY;
+        span = {start - most, start + most};
+      }
+      problem_.lower[row] = span.least - now;
+      problem_.upper[row] = span.most - now;
+      problem_.firmness[row] = kind.of_rate ? 1.0 : 0.0;
+      bounds_[static_cast<std::size_t>(2 * row)] = {actuator, kind.least};
+      bounds_[static_cast<std::size_t>(2 * row + 1)] = {actuator, kind.most};
+    }
+    // How far the linearisation is trusted.
+    const Eigen::Index row = kRows * n + a;
+    const double length =
+        std::max(problem_.J.col(a).norm(), std::abs(X_(a, a)) * (own.turns() ? 180.0 / std::numbers::pi : 1e3));
+    lengths_[a] = length;
+    problem_.A.row(row) = Eigen::RowVectorXd::Unit(n, a);
+    problem_.upper[row] = length > 0.0 ? reach / length : INFINITY;
+    problem_.lower[row] = -problem_.upper[row];
+  }
+}
+
+void Inverse::steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment) {
+  look(context, iterate, here, increment, true);
+  problem_.e = weights_.cwiseProduct(base_);
+  problem_.J = weights_.asDiagonal() * J_;
+  problem_.L = weights_.asDiagonal() * L_;
+  set_limits(context, iterate, increment.reduced);
+  binding_.clear();
+  dropped_.clear();
+  if (!steering_.solve(problem_)) {
+    increment.reduced.ok = false;
+    return;
+  }
+  const Eigen::VectorXd& pulls = steering_.pulls();
+  for (Eigen::Index row = 0; row < kRows * J_.cols(); ++row) {
+    if (std::abs(pulls[row]) > 1e-6 * steering_.strength()[row])
+      binding_.push_back(bounds_[static_cast<std::size_t>(2 * row + (pulls[row] > 0.0 ? 0 : 1))]);
+  }
+  for (const solve::Broken& own : steering_.broken())
+    dropped_.push_back(bounds_[static_cast<std::size_t>(2 * own.row + (own.at == solve::At::lower ? 0 : 1))]);
+  for (std::size_t a = 0; a < responses_.size(); ++a) {
+    const double own = steering_.p()[static_cast<Eigen::Index>(a)];
+    increment.reduced.dz += own * responses_[a].dz;
+    increment.reduced.dlambda += own * responses_[a].dlambda;
+    for (std::size_t i = 0; i < increment.reduced.dq.size(); ++i) increment.reduced.dq[i] += own * responses_[a].dq[i];
+  }
+  if (!here.touched()) return;
+  moved_ = problem_.B * steering_.p();
+  here.change_contacts(moved_, steering_.lambda(), increment);
+}
+
+double Inverse::first_command(const Model& model, const State& start, int actuator) {
+  const ActuatorModel& own = model.actuators[actuator];
+  return own.row < 0 ? start.actuators[actuator] : motor_position(model, start, own);
+}
+
+bool Inverse::settled(const Command& command, const Model& model) const {
+  double change = 0.0, size = 0.0;
+  for (std::size_t a = 0; a < model.sought.size(); ++a) {
+    const auto at = static_cast<Eigen::Index>(a);
+    const double own = std::abs(steering_.p()[at]);
+    change = std::max(change, own / std::max(std::abs(command.actuators[model.sought[a]]), 1e-300));
+    size = std::max(size, problem_.J.col(at).norm() * own);
+  }
+  return change <= 1e-6 || size <= kSettled;
+}
+
+void Inverse::take(double fraction, const Model& model, Command& command) const {
+  for (std::size_t a = 0; a < model.sought.size(); ++a) {
+    const ActuatorModel& own = model.actuators[model.sought[a]];
+    double& told = command.actuators[model.sought[a]];
+    const Span& span = own.row < 0 ? own.force : own.position;
+    const double wanted = told + fraction * steering_.p()[static_cast<Eigen::Index>(a)];
+    // (Not beyond the limit by rounding; what is outside may come back.)
+    told = wanted > told ? std::min(wanted, std::max(told, span.most)) : std::max(wanted, std::min(told, span.least));
+  }
+}
+
+Aim Inverse::aim(const Model& model, const State& state) {
+  Aim aim;
+  effector_errors(model, state, goal_, error_);
+  aim.farthest = farthest(model, error_);
+  aim.binding = binding_;
+  aim.dropped = dropped_;
+  aim.certain = steering_.certain();
+  for (std::size_t k = 0; k < model.effectors.size(); ++k) {
+    const EffectorModel& own = model.effectors[k];
+    const int pair = model.outputs[own.output].pair;
+    if (pair >= 0 && goal_.at[own.first] > 0.0 && std::isinf(pressing_of(state, pair).gap))
+      aim.apart = static_cast<int>(k);
+  }
+  aim.outcome = aim.farthest <= 1.0 ? Aim::Outcome::reached
+                : binding_.empty()  ? Aim::Outcome::nearest
+                                    : Aim::Outcome::limited;
+  return aim;
+}
+
+std::string describe(const Model& model, const Bound& bound) {
+  const ActuatorModel& own = model.actuators[bound.actuator];
+  const bool turns = own.turns();
+  const std::string force = turns ? "torque" : "force", place = turns ? "angle" : "displacement";
+  const std::string newton = turns ? " N m" : " N", metre = turns ? " rad" : " m";
+  const auto say = [&](const std::string& what, double value, const std::string& unit) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.6g", value);
+    return "actuators." + own.name + ": " + what + " " + number + unit;
+  };
+  switch (bound.limit) {
+    case Limit::least_force:
+      return say(force + " at least", own.force.least, newton);
+    case Limit::most_force:
+      return say(force + " at most", own.force.most, newton);
+    case Limit::least_position:
+      return say(place + " at least", own.position.least, metre);
+    case Limit::most_position:
+      return say(place + " at most", own.position.most, metre);
+    case Limit::speed:
+      return say("speed at most", own.speed, metre + "/s");
+    case Limit::force_rate:
+      return say(force + " rate at most", own.force_rate, newton + "/s");
+  }
+  return own.name;
+}
+
+std::string describe(const Model& model, const Aim& aim) {
+  std::string text;
+  const auto list = [&](const char* what, const std::vector<Bound>& bounds) {
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+      text += (i > 0 ? "; " : text.empty() ? what : std::string("; ") + what) + describe(model, bounds[i]);
+  };
+  switch (aim.outcome) {
+    case Aim::Outcome::none:
+      return "";
+    case Aim::Outcome::reached:
+      text = "reached";
+      break;
+    case Aim::Outcome::limited:
+      list("limited by ", aim.binding);
+      break;
+    case Aim::Outcome::nearest:
+      text = "nearest";
+      break;
+  }
+  list("dropped ", aim.dropped);
+  if (aim.apart >= 0)
+    text += "; outputs." + model.outputs[model.effectors[aim.apart].output].name + ": the two are not near each other";
+  return text;
+}
+
+StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
+                        State& state, Evaluation evaluation) {
+  check(model, goal);
+  Memory& memory = workspace.memory();
+  memory.inverse.begin(model, state, goal, h);
+  memory.command = command;
+  for (const int actuator : model.sought)
+    memory.command.actuators[actuator] = memory.inverse.first_command(model, state, actuator);
+  NewtonRules rules = step_rules(model, evaluation);
+  rules.inverse = &memory.inverse;
+  StepReport report = step_by(rules, memory, memory.command, h, state);
+  if (accepted(report.status)) report.aim = memory.inverse.aim(model, state);
+  return report;
+}
+
+namespace {
+
+constexpr int kMostTurns = 60;
+/// First region of trust, as a part of the scene's size.
+constexpr double kFirstReach = 0.2;
+
+/// Linearises about an equilibrium that a step from `start` has come to; false where a matrix is singular.
+bool linearize_at(Memory& memory, const State& start, const State& state, const Command& command, double time,
+                  StageTimes& times, const Linearization::Steer& steer) {
+  StepContext& context = memory.context;
+  context.set(start, command, time - start.time);
+  context.rate = 0.0;
+  for (solid::StepStart& own : context.solids) own.rate = 0.0;
+  memory.iterate.state = state;
+  find_contacts(context, memory.iterate.state, memory.here.contacts());
+  memory.here.evaluate(context, memory.iterate.state, times);
+  std::string failed;
+  if (!memory.here.finite() || !memory.here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed))
+    return false;
+  memory.here.solve(memory.increment, steer);
+  return memory.increment.reduced.ok;
+}
+
+double merit_of(const Model& model, const State& state, const Goal& goal) {
+  Eigen::VectorXd errors;
+  effector_errors(model, state, goal, errors);
+  double sum = 0.0;
+  for (const EffectorModel& own : model.effectors)
+    sum += own.weights.cwiseProduct(errors.segment(own.first, own.size)).squaredNorm();
+  return sum;
 }
 
 }  // namespace
 
-/// The step is linear in the forces: lambda = lambda_0 + sum_a p_a lambda_a, where lambda_a answers one newton of
-/// actuator a with everything else at rest. So effectors move to e_0 + J p, J = W_es lambda_a by columns.
-void InverseRoom::steer(const Goal& goal, StepContext& context, const State& iterate, Linearization& here,
-                        solve::CoupledSolution& solution) {
-  const Model& model = context.model;
-  const std::size_t n = model.actuators.size();
-  const auto effectors = static_cast<Eigen::Index>(3 * model.effectors.size());
-  responses.resize(n);
-  J.resize(effectors, static_cast<Eigen::Index>(n));
-  e.resize(effectors);
-  here.effector_motion(solution.dlambda, true, e);
-  for (std::size_t k = 0; k < model.effectors.size(); ++k) {
-    const EffectorModel& own = model.effectors[k];
-    e.segment<3>(static_cast<Eigen::Index>(3 * k)) +=
-        solid_point(model, iterate, own.solid, own.where) - goal.positions[k];
-  }
-  clear(model, unit);
-  bool ok = solution.ok;
-  for (std::size_t a = 0; a < n; ++a) {
-    unit.r[model.actuators[a].unknown] = -1.0;
-    here.couple(unit, responses[a]);
-    unit.r[model.actuators[a].unknown] = 0.0;
-    ok &= responses[a].ok;
-    if (responses[a].ok) here.effector_motion(responses[a].dlambda, false, J.col(static_cast<Eigen::Index>(a)));
-  }
-  H.noalias() = J.transpose().lazyProduct(J);
-  H.diagonal().array() += kProximal * std::max(H.trace() / std::max(1.0, static_cast<double>(n)), 1e-300);
-  g.noalias() = J.transpose().lazyProduct(e);
-  lower.resize(static_cast<Eigen::Index>(n));
-  upper.resize(static_cast<Eigen::Index>(n));
-  p.setZero(static_cast<Eigen::Index>(n));
-  for (std::size_t a = 0; a < n; ++a) {
-    lower[static_cast<Eigen::Index>(a)] = goal.least[a] - context.command.actuators[a];
-    upper[static_cast<Eigen::Index>(a)] = goal.most[a] - context.command.actuators[a];
-  }
-  if (!ok || !bounded.minimise(H, g, lower, upper, p)) {
-    solution.ok = false;
-    return;
-  }
-  e.noalias() += J * p;
-  for (std::size_t a = 0; a < n; ++a) {
-    const double own = p[static_cast<Eigen::Index>(a)];
-    context.command.actuators[a] = std::clamp(context.command.actuators[a] + own, goal.least[a], goal.most[a]);
-    solution.dz += own * responses[a].dz;
-    solution.dlambda += own * responses[a].dlambda;
-    for (std::size_t i = 0; i < solution.dq.size(); ++i) solution.dq[i] += own * responses[a].dq[i];
-  }
-}
-
-InverseReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, double h, State& state,
-                           Evaluation evaluation) {
+StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,
+                               double time, State& state) {
   check(model, goal);
   Memory& memory = workspace.memory();
-  memory.command.actuators = state.actuators;
-  memory.command.loads.resize(model.loads.size());
-  for (std::size_t i = 0; i < model.loads.size(); ++i)
-    memory.command.loads[i] = told_at(model.loads[i].factor, state.time + h);
-  memory.context.set(state, memory.command, h);
-  Iterate& iterate = memory.iterate;
-  iterate.t = 1.0;
-  first_guess(memory.context, iterate.state);
-  follow_points(memory.context, iterate.state, memory.room);
-  find_contacts(memory.context, iterate.state, memory.here.contacts());
-  NewtonRules rules{1, true};
-  rules.evaluation = evaluation;
-  const auto steer = [&](solve::CoupledSolution& solution) {
-    memory.inverse.steer(goal, memory.context, iterate.state, memory.here, solution);
-  };
-  rules.steer = std::cref(steer);  // (by reference: a copy would ask for memory)
-  InverseReport report;
-  report.step = newton([](double, StepContext&) {}, memory, rules, iterate);
-  report.distance = accepted(report.step.status) ? memory.inverse.e.norm() : NAN;
-  if (accepted(report.step.status)) std::swap(state, iterate.state);
+  Inverse& inverse = memory.inverse;
+  inverse.begin(model, state, goal, time - state.time);
+  Command told = command;
+  for (const int actuator : model.sought) told.actuators[actuator] = inverse.first_command(model, state, actuator);
+  StepResult at = equilibrium_step(model, workspace, told, state, time);
+  if (!accepted(at.report.status)) return at.report;
+  // Where friction remembers the way, every trial goes the whole of it.
+  const bool remembers = !model.pairs.empty() || !model.rubbing.empty();
+  StepReport spent = at.report;
+  double reach = kFirstReach * model.size * 1e3, merit = merit_of(model, at.next, goal);
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    inverse.reach = reach;
+    const bool ok = linearize_at(
+        memory, remembers ? state : at.next, at.next, told, time, spent.times,
+        [&](Increment& increment) { inverse.steer(memory.context, memory.iterate.state, memory.here, increment); });
+    ++spent.newton;
+    if (!ok || (inverse.motion() <= kSettled && inverse.settled(told, model))) break;
+    Command next = told;
+    inverse.take(1.0, model, next);
+    const double promised = merit - inverse.left().squaredNorm();
+    StepResult trial = equilibrium_step(model, workspace, next, remembers ? state : at.next, time);
+    spent.newton += trial.report.newton;
+    spent.times += trial.report.times;
+    const double found = accepted(trial.report.status) ? merit_of(model, trial.next, goal) : INFINITY;
+    const bool better = found < merit - 1e-4 * std::abs(promised) || std::sqrt(found) < 0.01;
+    const double moved = inverse.moved();
+    if (better) {
+      if (merit - found > 0.75 * promised) reach = std::max(reach, 2.0 * moved);
+      if (merit - found < 0.25 * promised) reach = std::max(0.5 * moved, kSettled);
+      at = std::move(trial);
+      told = next;
+      merit = found;
+    } else {
+      reach = 0.25 * std::min(reach, moved);
+      if (!(reach > kSettled)) break;
+    }
+  }
+  inverse.reach = INFINITY;
+  StepReport report = at.report;
+  report.newton = spent.newton;
+  report.times = spent.times;
+  state = std::move(at.next);
+  report.aim = inverse.aim(model, state);
   return report;
+}
+
+ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
+                                   double h) {
+  if (model.sought.empty() || model.effectors.empty())
+    throw std::invalid_argument("actuator_jacobian: the scene has no targets, or no actuator is sought");
+  Memory& memory = workspace.memory();
+  Inverse& inverse = memory.inverse;
+  Goal goal;
+  goal.at.resize(effector_size(model));
+  for (const EffectorModel& own : model.effectors)
+    goal.at.segment(own.first, own.size) = effector_value(model, state, own);
+  inverse.begin(model, state, goal, h);
+  const Command command = command_of(model, state);
+  bool ok = true;
+  StageTimes times;
+  const auto look = [&](Increment& increment) {
+    inverse.look(memory.context, memory.iterate.state, memory.here, increment, true);
+  };
+  if (of == JacobianOf::equilibrium) {
+    ok = linearize_at(memory, state, state, command, state.time, times, look);
+  } else {
+    // A copy of the state makes the step.
+    NewtonRules rules{1, true};
+    rules.inverse = &inverse;
+    State copy = state;
+    ok = accepted(step_by(rules, memory, command, h, copy).status);
+  }
+  if (!ok || !inverse.jacobian().allFinite()) throw std::runtime_error("actuator_jacobian: a matrix is singular");
+  ActuatorJacobian result{inverse.jacobian(), inverse.force_change(), inverse.position_change(), {}, {}};
+  for (const EffectorModel& own : model.effectors) {
+    const OutputModel& output = model.outputs[own.output];
+    const bool strain = output.rod >= 0 && output.quantity == Quantity::strain, press = output.pair >= 0;
+    const std::string unit = std::string(" [") + measure_of(model, own).si + "]";
+    for (int i = 0; i < own.size; ++i)
+      result.rows.push_back(output.name + "." +
+                            (press    ? "normal"
+                             : strain ? rod::kStrainNames[static_cast<std::size_t>(own.strain)]
+                                      : std::array{"x", "y", "z"}[static_cast<std::size_t>(i)]) +
+                            unit);
+  }
+  for (const int actuator : model.sought) {
+    const ActuatorModel& own = model.actuators[actuator];
+    result.columns.push_back(own.name + (own.row < 0 ? (own.turns() ? ".torque [N m]" : ".force [N]")
+                                                     : (own.turns() ? ".angle [rad]" : ".displacement [m]")));
+  }
+  return result;
 }
 
 }  // namespace sinew

@@ -1,29 +1,97 @@
-// The inverse problem, (15): a step in which forces of actuators are what is looked for.
+// The inverse problem, (1) and (13) to (15): steps and equilibria in which commands of motors are what is looked for.
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "sinew/sim/step.hpp"
+#include "sinew/sim/effectors.hpp"
+#include "sinew/solve/steering.hpp"
 
 namespace sinew {
 
-/// Where effectors are to be at the end of a step, and what their actuators can do.
-struct Goal {
-  std::vector<Vec3> positions;      ///< [m] of each of Scene::effectors
-  std::vector<double> least, most;  ///< [N] of each actuator; pulling only: least 0. They may be infinite
+/// "actuators.pull: force at most 10 N"
+std::string describe(const Model& model, const Bound& bound);
+
+/// "reached", or what keeps the effectors from their goals; empty without targets.
+std::string describe(const Model& model, const Aim& aim);
+
+/// What is looked for at one linearisation: increments p of the sought commands that bring effectors nearest to their
+/// goals within the motors' limits, while contacts answer (solve/steering); where these leave a choice, forces nearest
+/// to the preferred ones. Keeps its memory.
+class Inverse {
+ public:
+  /// For a step of h [s] from a state; h = 0: rates do not matter.
+  void begin(const Model& model, const State& start, const Goal& goal, double h);
+  /// Adds to an increment what the best commands change.
+  void steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment);
+  /// A part of them becomes the command.
+  void take(double fraction, const Model& model, Command& command) const;
+  /// What a sought actuator is told before anything is known: what it does at the start.
+  static double first_command(const Model& model, const State& start, int actuator);
+  /// No increment would change a command, or what it does to the effectors, by anything to speak of.
+  bool settled(const Command& command, const Model& model) const;
+  /// How far the linearisation's increments would move the effectors, weighed.
+  double motion() const { return (steering_.left() - problem_.e).norm(); }
+  const Eigen::VectorXd& left() const { return steering_.left(); }  ///< weighed errors that the linearisation leaves
+  /// What came of it, at the state that the step has ended in.
+  Aim aim(const Model& model, const State& state);
+  /// The longest increment, in the measure of `reach`.
+  double moved() const { return steering_.p().cwiseAbs().cwiseProduct(lengths_).maxCoeff(); }
+  /// Increments no longer than this [mm, deg, ...] of what they move effectors, or motors, by; none: any.
+  double reach = INFINITY;
+
+  /// Responses to one more unit of each sought command, and of forces at contacts, at `here`, factored.
+  void look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment,
+            bool pushed);
+  /// Those of effectors, of the motors' forces and of their places, contacts going on as they are.
+  Eigen::MatrixXd jacobian() const { return J_ + L_ * S_; }
+  Eigen::MatrixXd force_change() const { return F_ + F_pressed_ * S_; }
+  Eigen::MatrixXd position_change() const { return X_ + X_pressed_ * S_; }
+
+ private:
+  void set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution);
+
+  Goal goal_;
+  double h_ = 0.0;
+  std::vector<double> start_force_, start_position_;
+  EffectorRows rows_;
+  solve::RightSide unit_;
+  std::vector<solve::CoupledSolution> responses_;
+  Eigen::VectorXd error_, base_, weights_, forces_, moved_, lengths_, preferred_;
+  Eigen::MatrixXd J_, F_, X_;                  ///< d(errors, forces of motors, their places) / d commands
+  Eigen::MatrixXd L_, F_pressed_, X_pressed_;  ///< and by forces at contacts
+  Eigen::MatrixXd S_;                          ///< which follow commands by this
+  solve::SteeringProblem problem_;
+  solve::Steering steering_;
+  std::vector<Bound> bounds_, binding_, dropped_;
 };
 
-struct InverseReport {
-  StepReport step;
-  double distance = 0.0;  ///< [m] from the goals, root of the sum of squares, as the linearisation sees it; NaN: failed
+/// A step as `step` makes, whose sought motors bring the effectors nearest to their goals within their limits. With
+/// `newton: n` of the scene in so many linearisations (1: the paper's one problem a step), else until it has converged.
+/// Of the command the sought actuators do not count. What came of it is in StepReport::aim. Throws
+/// std::invalid_argument where the goal has another size or is not finite, or the model has no targets.
+StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
+                        State& state, Evaluation evaluation = Evaluation::full);
+
+/// The equilibrium under what is prescribed at `time`, as `equilibrium_step` finds it, with the commands that bring the
+/// effectors nearest to their goals within their limits: Gauss and Newton's method on the exact tangents of equilibria,
+/// each of them found, in a region of trust, until no increment helps. On failure the state stays.
+StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,
+                               double time, State& state);
+
+/// Derivatives with respect to the commands of the sought actuators; contacts go on as they are, open, sticking or
+/// slipping.
+struct ActuatorJacobian {
+  Eigen::MatrixXd effectors;               ///< of the components of all effectors, a row each [SI]
+  Eigen::MatrixXd forces, positions;       ///< of the motors themselves [N or N m], [m or rad]
+  std::vector<std::string> rows, columns;  ///< "tip.x [m]", "pull.force [N]"
 };
 
-/// A step as `step` makes with one linearisation, whatever the scene's `newton`, with the forces that bring the
-/// effectors nearest to their goals within their bounds; they stand in State::actuators. All rows are eliminated first,
-/// then a problem of as many unknowns as there are actuators is left. All actuators must be driven by forces on bases
-/// of rods; throws std::invalid_argument where they are not, where sizes do not match, a goal or bound is not a number,
-/// or a bound above the other.
-InverseReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, double h, State& state,
-                           Evaluation evaluation = Evaluation::full);
+/// `step`: of where one linearisation takes the effectors in a step of h from a state, (14); what a controller of that
+/// rate sees. `equilibrium`: of where they come to rest, by the exact tangent of an equilibrium; h does not matter.
+enum class JacobianOf { step, equilibrium };
+/// Throws std::invalid_argument where the model has no targets, and std::runtime_error where a matrix is singular.
+ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
+                                   double h);
 
 }  // namespace sinew

@@ -201,7 +201,7 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
   } else {
     increment.forces = {};
   }
-  if (steer && increment.reduced.ok) steer(increment.reduced);
+  if (steer && increment.reduced.ok) steer(increment);
   increment.dx.resize(free_.size());
   if (!increment.reduced.ok) return;
   for (std::size_t i = 0; i < free_.size(); ++i)
@@ -240,9 +240,9 @@ void Linearization::refine(const std::vector<Eigen::VectorXd>& solids, Increment
   increment.reduced.ok = !stalled_;
 }
 
-void Linearization::effector_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
+void Linearization::watched_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
   for (std::size_t i = 0; i < free_.size(); ++i)
-    free_[i].effector_motion(context_->model.solids[i], context_->model, dlambda, pushed, motion);
+    free_[i].watched_motion(context_->model.solids[i], context_->model, dlambda, pushed, motion);
 }
 
 void advance_by(const StepContext& context, const Increment& increment, double fraction, State& iterate) {

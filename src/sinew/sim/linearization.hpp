@@ -64,16 +64,35 @@ class Linearization {
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
 
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
-  /// Whoever steers may change the reduced solution, before volumes follow it.
-  using Steer = std::function<void(solve::CoupledSolution& solution)>;
+  /// Whoever steers may change the reduced solution and the forces at contacts, before volumes follow them.
+  using Steer = std::function<void(Increment& increment)>;
   void solve(Increment& increment, const Steer& steer = {}) { solve(*this, increment, steer); }
   void solve(const Linearization& right, Increment& increment, const Steer& steer = {});
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
   void couple(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.solve(side, solution); }
-  /// How multipliers move the effectors [m], and, while the last forces on volumes still stand (`pushed`), these.
-  void effector_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion);
+  /// How multipliers move watched points [m], and, while the last forces on volumes still stand (`pushed`), these.
+  void watched_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion);
+
+  /// Contacts and rubbing points are part of what is solved here.
+  bool touched() const { return contacts_ready_; }
+  const ContactForces& contact_forces() const { return contact_forces_; }
+  /// How a reduced solution moves their rows [m]; how forces on these change the reduced solution, and watched points
+  /// (added).
+  void contact_motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) {
+    contact_forces_.motion_of(*context_, free_, solution, u);
+  }
+  const solve::CoupledSolution& press(const Eigen::VectorXd& forces) {
+    return contact_forces_.response_to(*context_, free_, factor_, forces);
+  }
+  void pressed_motion(const Eigen::VectorXd& forces, Eigen::Ref<Eigen::VectorXd> motion) const {
+    contact_forces_.watched_motion(*context_, free_, forces, motion);
+  }
+  /// Other forces than were found, where an increment has been changed by what moves the rows by `moved`.
+  void change_contacts(const Eigen::VectorXd& moved, const Eigen::VectorXd& lambda, Increment& increment) {
+    contact_forces_.change(*context_, contacts_, free_, factor_, moved, lambda, increment.reduced, increment.forces);
+  }
 
  private:
   /// Tasks that know nothing of each other: each volume, and all rods.

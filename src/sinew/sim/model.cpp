@@ -6,6 +6,8 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/contacts.hpp"
+#include "sinew/sim/effectors.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/solid_matrix.hpp"
 
@@ -261,13 +263,20 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
-  for (std::size_t i = 0; i < scene.effectors.size(); ++i)
-    build_effector(model, scene.effectors[i], static_cast<int>(i));
+  for (std::size_t i = 0; i < scene.targets.size(); ++i) build_target(model, static_cast<int>(i));
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    if (model.actuators[i].sought()) model.sought.push_back(static_cast<int>(i));
+  }
+  check_targets(model);
   for (std::size_t i = 0; i < model.solids.size(); ++i) check_held(model, static_cast<int>(i));
   count_jumps(model);
   plan_factors(model);
   measure(model);
   const State start = initial_state(model);
+  for (OutputModel& output : model.outputs) {
+    if (output.quantity == Quantity::orientation) output.upright = output_axes(model, start, output);
+  }
+  for (EffectorModel& effector : model.effectors) effector.start = effector_value(model, start, effector);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();
   for (const Overlap& own : overlaps(model, start)) {

@@ -1,6 +1,7 @@
 // The model: a scene that has been judged, turned into bodies, rows and numbers. Immutable; a step only reads it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -52,8 +53,8 @@ struct SolidModel {
   std::vector<int> carrier;           ///< per node with held coordinates: number of the frame that holds it
   Eigen::Matrix3Xd springs;           ///< [N/m] per node and axis
   std::vector<int> rows;              ///< numbers of the solid rows on it
-  std::vector<int> effectors;         ///< and of the effectors
-  linalg::SparseFactor::Rows border;  ///< H: three rows for each of them, effectors last, over its unknowns
+  std::vector<int> watched;           ///< and of the watched points
+  linalg::SparseFactor::Rows border;  ///< H: three rows for each of them, watched points last, over its unknowns
   std::shared_ptr<const linalg::Fronts> fronts;
   std::vector<BlockPlace> places;              ///< of every element's blocks on and below its diagonal, row by row
   std::vector<std::size_t> first_place;        ///< per element
@@ -118,7 +119,8 @@ struct Collider {
 struct PairModel {
   Collider a, b;
   double friction = 0.0, restitution = 0.0;
-  double depth = 0.0;  ///< [m] up to which they are met where they overlap, if they do at the start; 0: little
+  double depth = 0.0;   ///< [m] up to which they are met where they overlap, if they do at the start; 0: little
+  bool sought = false;  ///< a target says how hard they are to press: they are watched from further away
 };
 
 /// A rod or a cable by its number among its kind.
@@ -178,11 +180,16 @@ struct ActuatorModel {
   Motion motion = Motion::translation;
   Driven driven = Driven::displacement;
   Drive drive;
-  std::optional<rod::Tendon> tendon;  ///< pulled instead of the base
-  double tendon_length = 0.0;         ///< [m] at t = 0
-  int axis = -1;                      ///< of its base's motion
-  int unknown = -1;                   ///< of its base coordinate in z
-  int row = -1;                       ///< if driven by displacement or angle
+  std::optional<rod::Tendon> tendon;     ///< pulled instead of the base
+  double tendon_length = 0.0;            ///< [m] at t = 0
+  int axis = -1;                         ///< of its base's motion
+  int unknown = -1;                      ///< of its base coordinate in z
+  int row = -1;                          ///< if driven by displacement or angle
+  Span force, position;                  ///< [N], [m], [N m], [rad] what it can do
+  double speed = 0.0, force_rate = 0.0;  ///< how fast, each may be infinite
+  double preferred = 0.0;                ///< [N] or [N m] where targets leave a choice
+  bool sought() const { return std::holds_alternative<Sought>(drive); }
+  bool turns() const { return motion == Motion::rotation; }
 };
 
 /// Forces on material points of a rod.
@@ -215,9 +222,9 @@ struct LoadModel {
   std::variant<RodLoadModel, SolidLoadModel> on;
 };
 
-/// A point of a solid that is to be moved somewhere. Its three rows stand beside those of couplings, without
-/// multipliers.
-struct EffectorModel {
+/// A point of a solid, or a vector carried with it, whose motion a step tells besides its solution: three rows beside
+/// those of couplings, without multipliers.
+struct WatchedPoint {
   int solid = 0;
   solid::EmbeddedPoint where;
 };
@@ -230,6 +237,19 @@ struct OutputModel {
   double abscissa = 0.0;       ///< on the rod
   std::vector<bool> nodes;     ///< of the solid, that a reaction is summed over
   Quantity quantity = Quantity::position;
+  std::array<solid::EmbeddedPoint, 3> axes;   ///< of an orientation on a solid: columns of F
+  rod::Mat3 upright = rod::Mat3::Identity();  ///< and of any: how it is turned at the start
+};
+
+/// What is to be brought somewhere: an output, its components and what counts as there.
+struct EffectorModel {
+  int output = 0;
+  int first = 0, size = 3;  ///< its components among those of all effectors
+  int strain = 0;           ///< of an output of strain: which of the six
+  Eigen::VectorXd weights;  ///< per component: errors are weighed in units of 1 mm, 1 deg, 1/m, 1 % [1/SI]
+  double tolerance = 0.0;   ///< [SI] of the length of what is off, where weights are not 0
+  int watched = -1;         ///< first of its watched points, on a solid
+  Eigen::VectorXd start;    ///< [SI] where it is at t = 0
 };
 
 /// What `check` tells a person about one coupling.
@@ -256,6 +276,8 @@ struct Model {
   std::vector<TieModel> ties;
   std::vector<SolidRow> solid_rows;
   std::vector<EffectorModel> effectors;
+  std::vector<WatchedPoint> watched;
+  std::vector<int> sought;  ///< actuators that bring effectors to their targets
   std::vector<ActuatorModel> actuators;
   std::vector<LoadModel> loads;
   std::vector<OutputModel> outputs;

@@ -53,11 +53,12 @@ bool LineSearch::too_far(const StepContext& context, const Linearization& here) 
          !(here.largest() <= force_) && here.largest() > 1e-6 * here.scale();
 }
 
-void LineSearch::shorten(const StepContext& context, State& iterate) {
+double LineSearch::shorten(const StepContext& context, State& iterate) {
   iterate = from_;
   fraction_ *= 0.5;
   ++halvings_;
   advance_by(context, increment_, fraction_, iterate);
+  return fraction_;
 }
 
 Eigen::VectorXd measured(const Model& model, const Increment& increment) {
@@ -115,7 +116,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   };
   const auto complete = [&] {
     finish(context, iterate.state, memory.room);
-    finish_contacts(here.contacts(), iterate.state);
+    finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     report.contact = here.contact_report();
     return report;
@@ -135,7 +136,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     const bool blind = rules.fixed && report.newton < rules.limit;
     here.evaluate(context, iterate.state, report.times, blind ? std::optional(solid::Tangent::definite) : std::nullopt);
     while (memory.search.too_far(context, here)) {
-      memory.search.shorten(context, iterate.state);
+      const double back = memory.search.shorten(context, iterate.state);
+      if (rules.inverse) rules.inverse->take(-back, context.model, context.command);
       here.evaluate(context, iterate.state, report.times);
     }
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
@@ -159,7 +161,12 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.rotated |= here.rotated();
     if (context.rate == 0.0) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
-    here.solve(increment, rules.steer);
+    if (rules.inverse) {
+      const auto steer = [&](Increment& step) { rules.inverse->steer(context, iterate.state, here, step); };
+      here.solve(increment, std::cref(steer));  // (by reference: a copy would ask for memory)
+    } else {
+      here.solve(increment);
+    }
     if (!increment.reduced.ok && !descent && !rules.fixed) {
       here.stiffen();
       here.solve(increment);
@@ -183,6 +190,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     const double fraction = rules.fixed ? 1.0 : trusted_fraction(context, increment);
     if (descent) memory.search.take(iterate.state, increment, fraction, here);
     advance_by(context, increment, fraction, iterate.state);
+    if (rules.inverse) rules.inverse->take(fraction, context.model, context.command);
   }
 }
 

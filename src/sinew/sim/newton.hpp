@@ -4,8 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "sinew/sim/linearization.hpp"
-#include "sinew/solve/bounded.hpp"
+#include "sinew/sim/inverse.hpp"
 
 namespace sinew {
 
@@ -30,7 +29,7 @@ struct NewtonRules {
   Linearization::Wanted wanted = Linearization::Wanted::descent;
   const AcrossPath* across = nullptr;        ///< t is looked for, too
   Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
-  Linearization::Steer steer = {};           ///< changes increments: of fixed rounds
+  Inverse* inverse = nullptr;                ///< commands are looked for, too: it has begun
 };
 
 /// Says what is prescribed at t.
@@ -44,7 +43,8 @@ class LineSearch {
   void begin() { taken_ = false; }
   void take(const State& from, const Increment& increment, double fraction, const Linearization& there);
   bool too_far(const StepContext& context, const Linearization& here) const;
-  void shorten(const StepContext& context, State& iterate);
+  /// By how much of the increment the iterate is then nearer to where it came from.
+  double shorten(const StepContext& context, State& iterate);
 
  private:
   bool taken_ = false;
@@ -55,20 +55,6 @@ class LineSearch {
 };
 
 struct Modes;
-struct Goal;
-
-/// What an inverse step works with.
-struct InverseRoom {
-  /// Adds to a solution what the actuators' best forces change, and puts these into the context's command.
-  void steer(const Goal& goal, StepContext& context, const State& iterate, Linearization& here,
-             solve::CoupledSolution& solution);
-
-  solve::RightSide unit;
-  std::vector<solve::CoupledSolution> responses;  ///< to one newton of each actuator
-  Eigen::MatrixXd J, H;
-  Eigen::VectorXd e, g, lower, upper, p;
-  solve::Bounded bounded;
-};
 
 /// What a Workspace keeps.
 struct Memory {
@@ -80,7 +66,7 @@ struct Memory {
   LineSearch search;
   Iterate iterate;
   Command command;
-  InverseRoom inverse;
+  Inverse inverse;
   rod::Configuration room;
   std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
 };
@@ -88,6 +74,12 @@ struct Memory {
 /// Iterates until forces and rows are balanced and completes the state (`finish`). On failure the report names it and
 /// the iterate is where it ended.
 StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules, Iterate& iterate);
+
+/// How the scene wants its steps made.
+NewtonRules step_rules(const Model& model, Evaluation evaluation);
+
+/// One step of h from a state to a command, by these rules: `step`, `inverse_step`. On failure the state stays.
+StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state);
 
 /// What changes of an equilibrium as t grows: the tangent K u' = -dr/dt of the path, into Memory::change. Memory::here
 /// stands there and is factored, and `increment` is what it gives.

@@ -26,6 +26,7 @@ Value interpolate(const std::vector<double>& times, const std::vector<Value>& va
 }  // namespace
 
 double value_at(const Table& table, double time) { return interpolate(table.times, table.values, time); }
+Eigen::VectorXd value_at(const Track& track, double time) { return interpolate(track.times, track.values, time); }
 
 Placement frame_at(const Frame& frame, double time) {
   Pose motion;

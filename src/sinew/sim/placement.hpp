@@ -20,6 +20,7 @@ inline Vec3 apply(const Placement& a, const Vec3& x) { return a.R * x + a.p; }
 
 /// Piecewise linear, first and last value held.
 double value_at(const Table& table, double time);
+Eigen::VectorXd value_at(const Track& track, double time);
 
 /// Where a frame stands at a time: its motion there (the identity without one) after its pose.
 Placement frame_at(const Frame& frame, double time);

@@ -1,5 +1,7 @@
 #include "sinew/sim/places.hpp"
 
+#include "sinew/solid/corotational.hpp"
+
 namespace sinew {
 
 Placement moved(const Model& model, const State& state, int frame) {
@@ -20,6 +22,14 @@ rod::Configuration rod_shape(const Model& model, const State& state, int rod) {
 
 Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where) {
   return solid::position(where, model.solids[solid].body.cells, state.solids[solid].x);
+}
+
+rod::Mat3 output_axes(const Model& model, const State& state, const OutputModel& output) {
+  if (output.body >= 0) return state.bodies[output.body].R;
+  if (output.rod >= 0) return rod::branch(rod_shape(model, state, output.rod), output.abscissa).R;
+  rod::Mat3 F;
+  for (int i = 0; i < 3; ++i) F.col(i) = solid_point(model, state, output.solid, output.axes[i]);
+  return solid::polar_rotation(F);
 }
 
 int count_folded(const Model& model, const State& state) {

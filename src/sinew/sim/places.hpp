@@ -19,6 +19,9 @@ rod::Configuration rod_shape(const Model& model, const State& state, int rod);
 /// A point of a solid.
 Vec3 solid_point(const Model& model, const State& state, int solid, const solid::EmbeddedPoint& where);
 
+/// How a point of an output is turned: the cross-section of a rod, a rigid body, or the rotation of F on a solid.
+rod::Mat3 output_axes(const Model& model, const State& state, const OutputModel& output);
+
 /// How many cells of solids are flat or inside out.
 int count_folded(const Model& model, const State& state);
 

@@ -243,6 +243,37 @@ void clear(const Model& model, solve::RightSide& side) {
   for (std::size_t n = 0; n < model.rods.size(); ++n) side.chains[n].setZero(model.rods[n].rod.strain_coordinates());
 }
 
+namespace {
+
+Eigen::VectorXd tendon_gradient(const Model& model, const State& iterate, const ActuatorModel& actuator) {
+  const int rod = actuator.line.rod;
+  return rod::tendon_length(model.rods[rod].rod, *actuator.tendon, iterate.rods[rod].q).gradient;
+}
+
+}  // namespace
+
+void tell_motor(const Model& model, const State& iterate, int actuator, double more, solve::RightSide& side) {
+  const ActuatorModel& own = model.actuators[actuator];
+  if (own.row >= 0) {
+    side.c[own.row] -= more;  // position - target
+  } else if (own.tendon) {
+    side.chains[own.line.rod] += more * tendon_gradient(model, iterate, own);
+  } else {
+    side.r[own.unknown] -= more;
+  }
+}
+
+double motor_motion(const Model& model, const State& iterate, int actuator, const solve::CoupledSolution& solution) {
+  const ActuatorModel& own = model.actuators[actuator];
+  if (own.tendon) return -tendon_gradient(model, iterate, own).dot(solution.dq[own.line.rod]);
+  return solution.dz[own.unknown];
+}
+
+double motor_reaction(const Model& model, int actuator, const solve::CoupledSolution& solution) {
+  const int row = model.actuators[actuator].row;
+  return row < 0 ? 0.0 : solution.dlambda[row];
+}
+
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate) {
   const Model& model = context.model;

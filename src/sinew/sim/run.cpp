@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sinew/sim/clock.hpp"
+#include "sinew/sim/inverse.hpp"
 #include "sinew/sim/modal.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/statics.hpp"
@@ -26,6 +27,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const bool on_grid = state.time == from;
   const double whole = on_grid ? h : to - state.time;
   Command& command = workspace.memory().command;
+  Goal goal;
   StepReport report, earlier;
   // Half steps are fractions of the grid's, whatever is left of it after earlier ones.
   for (int halvings = 0; halvings <= kHalvings; ++halvings) {
@@ -36,8 +38,14 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
     command_at(model, to, command);
     if (!lands) command = between(command_of(model, state), command, part / whole);
-    report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
-                         : step(model, workspace, command, lands ? whole : part, state, evaluation);
+    if (!model.effectors.empty()) {
+      goal_at(model, time, goal);
+      report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
+                           : inverse_step(model, workspace, goal, command, lands ? whole : part, state, evaluation);
+    } else {
+      report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
+                           : step(model, workspace, command, lands ? whole : part, state, evaluation);
+    }
     report.halvings = halvings;
     // What earlier attempts cost is part of what the step did.
     report.times += earlier.times;

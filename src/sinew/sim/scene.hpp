@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,8 +35,11 @@ struct Table {
 /// Marks a quantity that the caller sets at every step (`external` in a scene file).
 struct External {};
 
-/// A constant or table over time, or set from outside.
-using Drive = std::variant<Table, External>;
+/// Marks a motor of which the inverse problem is to find the command (`inverse` in a scene file).
+struct Sought {};
+
+/// A constant or table over time, set from outside, or sought.
+using Drive = std::variant<Table, External, Sought>;
 
 /// Moves a frame: piecewise linear in `rotate` and `translate`, applied in the world after `Frame::pose`.
 struct FrameMotion {
@@ -283,6 +287,19 @@ struct Tendon {
 enum class Motion { translation, rotation };
 enum class Driven { force, displacement, torque, angle };
 
+/// Least and most of something.
+struct Span {
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+};
+
+/// What a motor can do, which the inverse problem keeps to. Of a motor that turns: torques, angles.
+struct Limits {
+  std::optional<Span> force;         ///< [N] or [N m]; none: cables and tendons only pull, others may do anything
+  Span displacement;                 ///< [m] or [rad]
+  std::optional<double> speed;       ///< [m/s] or [rad/s] > 0
+  std::optional<double> force_rate;  ///< [N/s] or [N m/s] > 0
+};
+
 /// Moves a rod: its base along an axis (translation) or about one (rotation) of its rest frame, or a tendon in it.
 /// Translation is along -x when no axis is given: a positive displacement pulls the rod out, a positive force pulls.
 struct Actuator {
@@ -292,6 +309,8 @@ struct Actuator {
   std::optional<Tendon> tendon;  ///< pulled instead of the base: force is its tension, displacement how far it is drawn
   Driven driven = Driven::displacement;
   Drive drive;  ///< [N], [m], [N m] or [rad]
+  Limits limits;
+  std::optional<double> preferred;  ///< [N] or [N m]: where targets leave a choice; none: as little as possible
 };
 
 /// Dead forces and pressure on a region of a solid.
@@ -317,9 +336,10 @@ struct RodLoad {
 using Load = std::variant<RodLoad, SolidLoad>;
 
 /// What is recorded of a material point, of a solid (`point`) or a rod (`at`); `reaction`: the force with which a
-/// solid's held nodes in `region` are held. Of a rigid body where its centre of mass is, or the force of all that
-/// touches it. Of two objects (`between`) how they touch.
-enum class Quantity { position, displacement, strain, force, moment, stress, reaction };
+/// solid's held nodes in `region` are held; `orientation`: how far it has turned since the start. Of a rigid body where
+/// its centre of mass is, how it has turned, or the force of all that touches it. Of two objects (`between`) how they
+/// touch.
+enum class Quantity { position, displacement, orientation, strain, force, moment, stress, reaction };
 struct Output {
   std::optional<std::string> solid;
   std::optional<std::string> rod;
@@ -330,6 +350,21 @@ struct Output {
   std::optional<double> reach;             ///< as for Slide
   std::optional<Region> region;            ///< of a reaction; none: all
   Quantity quantity = Quantity::position;  ///< displacement and reaction: of a solid; force and moment: of a rod
+};
+
+/// Numbers over time, piecewise linear, first and last held outside. What stands still has one time.
+struct Track {
+  std::vector<double> times;            ///< [s], strictly increasing
+  std::vector<Eigen::VectorXd> values;  ///< at each time, one of each component
+};
+
+/// Where an output is to be. Motors that are `Sought` bring it there, or as near as they can.
+struct Target {
+  std::string output;                 ///< of `position`, `orientation` or `strain`, or between two
+  std::variant<Track, External> at;   ///< [m], [rad], [1/m] or 1, normal force [N]
+  Strain strain = Strain::bending_y;  ///< of an output of strain: which one
+  std::vector<double> weights;        ///< of each component [-] >= 0; empty: 1. With 0 it may be anything
+  std::optional<double> tolerance;    ///< reached if no further off; none: see sim/effectors.hpp
 };
 
 /// Shapes of rigid bodies and obstacles, in their own axes with the middle at the origin.
@@ -443,7 +478,7 @@ struct Scene {
   Named<Actuator> actuators;
   Named<Load> loads;
   Named<Output> outputs;
-  std::vector<std::string> effectors;  ///< outputs, positions of points of solids, that `inverse_step` moves
+  std::vector<Target> targets;
 };
 
 }  // namespace sinew

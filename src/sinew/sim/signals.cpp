@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/constraint/sliding.hpp"
+#include "sinew/sim/effectors.hpp"
 #include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/solid_loads.hpp"
@@ -46,6 +47,12 @@ SignalGroup position_group(const OutputModel& output) {
           [=](const Model& model, const State& state) { return numbers(output_position(model, state, output)); }};
 }
 
+SignalGroup orientation_group(const OutputModel& output) {
+  return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
+            return numbers(Vec3(lie::log(output_axes(model, state, output) * output.upright.transpose())));
+          }};
+}
+
 // Without a default, so that the compiler asks where a new quantity belongs.
 SignalGroup solid_group(const OutputModel& output) {
   static constexpr std::initializer_list<const char*> kSix = {"xx", "yy", "zz", "yz", "xz", "xy"};
@@ -76,6 +83,8 @@ SignalGroup solid_group(const OutputModel& output) {
     case Quantity::reaction:
       return {named(output.name, {"x", "y", "z"}),
               [=](const Model& model, const State& state) { return numbers(reaction(model, state, output)); }};
+    case Quantity::orientation:
+      return orientation_group(output);
     case Quantity::position:
     case Quantity::force:
     case Quantity::moment:
@@ -99,6 +108,7 @@ Vec3 touching_force(const Model& model, const State& state, int body) {
 SignalGroup body_group(const OutputModel& output) {
   const int body = output.body;
   const bool force = output.quantity == Quantity::force;
+  if (output.quantity == Quantity::orientation) return orientation_group(output);
   return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
             return numbers(force ? touching_force(model, state, body) : state.bodies[body].p);
           }};
@@ -114,14 +124,14 @@ SignalGroup pair_group(const OutputModel& output) {
             for (const ContactState& own : state.contacts) {
               if (own.pair != pair) continue;
               sum += sign * force_on_second(own);
-              const double pressed = own.force.dot(own.normal);
-              normal += pressed;
-              contacts += 1.0;
               gap = std::min(gap, own.gap);
+              if (own.force.isZero()) continue;  // only watched
+              normal += own.force.dot(own.normal);
+              contacts += 1.0;
               sliding += slides(model, own) ? 1.0 : 0.0;
             }
             return std::vector<double>{
-                sum.x(), sum.y(), sum.z(), normal, contacts, sliding, contacts > 0.0 ? gap : 0.0};
+                sum.x(), sum.y(), sum.z(), normal, contacts, sliding, std::isfinite(gap) ? gap : 0.0};
           }};
 }
 
@@ -151,6 +161,8 @@ SignalGroup output_group(const OutputModel& output) {
                 const rod::SectionStress stress = section_stress(model, state, rod, s);
                 return std::vector<double>{stress.axial, stress.bending, stress.torsion, stress.von_mises};
               }};
+    case Quantity::orientation:
+      return orientation_group(output);
     case Quantity::position:
     case Quantity::displacement:
     case Quantity::reaction:
@@ -178,6 +190,29 @@ SignalGroup motor_group(const Model& all) {
   return group;
 }
 
+/// Where a target is, and how far off its output.
+SignalGroup target_group(const Model& all, std::size_t number) {
+  const EffectorModel& effector = all.effectors[number];
+  const std::string name = all.outputs[effector.output].name + ".target";
+  SignalGroup group;
+  if (effector.size == 1) {
+    group.names = {name};
+  } else {
+    group.names = named(name, {"x", "y", "z"});
+  }
+  group.names.push_back(all.outputs[effector.output].name + ".error");
+  group.values = [number](const Model& model, const State& state) {
+    const EffectorModel& own = model.effectors[number];
+    const Goal goal = goal_at(model, state.time);
+    Eigen::VectorXd errors;
+    effector_errors(model, state, goal, errors);
+    std::vector<double> values = numbers(Eigen::VectorXd(goal.at.segment(own.first, own.size)));
+    values.push_back(error_of(own, errors));
+    return values;
+  };
+  return group;
+}
+
 SignalGroup energy_group() {
   return {named("energy", {"kinetic", "elastic", "weight", "work", "dissipated"}),
           [](const Model& model, const State& state) {
@@ -196,6 +231,9 @@ std::vector<SignalGroup> signal_groups(const Model& model) {
         {{"mode.frequency"}, [](const Model&, const State& state) { return std::vector<double>{state.frequency}; }});
   }
   for (const OutputModel& output : model.outputs) groups.push_back(output_group(output));
+  for (std::size_t i = 0; i < model.effectors.size(); ++i) {
+    if (std::holds_alternative<Track>(model.scene.targets[i].at)) groups.push_back(target_group(model, i));
+  }
   groups.push_back(motor_group(model));
   // A static path has its own gravity at every point, a mode none: no balance to draw up.
   if (model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static)

@@ -22,6 +22,8 @@ struct SignalGroup {
 ///   solid also .xx .. of `strain` and `stress` and .x|y|z of `reaction` (NOTATION.md has all); of a rigid body .x|y|z
 ///   of its place or of the force on it; of two that touch .x|y|z, the force on the first, .normal [N], the sum of
 ///   normal forces, .contacts, their number, .sliding, how many of them slide, .gap [m], the least;
+///   <output>.target.x|y|z or .target, where the target of an output is, and .error, how far off that is, in the
+///   components that matter [m], [rad], [1/m] or 1;
 ///   <actuator>.displacement [m] and .force [N], or .angle [rad] and .torque [N m];
 ///   energy.kinetic|elastic|weight|work|dissipated [J]: weight is that of the gravitational field, 0 at the start; work
 ///   is done by motors, loads and moving supports of solids, dissipated is what is missing in the balance: damping of

@@ -150,7 +150,7 @@ void plan_factor(Model& model, int number) {
     }
   };
   gather(model.solid_rows, solid.rows);
-  gather(model.effectors, solid.effectors);
+  gather(model.watched, solid.watched);
   solid.border = border_rows(body, points);
   std::vector<int> slots(static_cast<std::size_t>(body.unknowns));
   for (int node = 0; node < body.nodes(); ++node) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sinew/sim/contacts.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/step_ends.hpp"
@@ -177,16 +178,19 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
                   state.time,
                   time};
   const int folded = count_folded(model, state);
+  Memory& memory = workspace.memory();
+  // What contacts hold is not part of the tangent that tells of stability, and they make kinks in a path.
+  const bool touches = !model.pairs.empty();
   const auto sound = [&](const Reached& reached) {
-    return accepted(reached.report.status) && !reached.report.unstable &&
+    return accepted(reached.report.status) && (touches || !reached.report.unstable) &&
            count_folded(model, reached.at.state) <= folded;
   };
-  Memory& memory = workspace.memory();
   const auto guessed = [&](const State& from) {
     along(ramp, from)(1.0, memory.context);
     Iterate guess;
     first_guess(memory.context, guess.state);
     follow_points(memory.context, guess.state, memory.room);
+    find_contacts(memory.context, guess.state, memory.here.contacts());
     return guess;
   };
 
@@ -196,7 +200,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   StepReport spent = end.report;
   if (!sound(end)) {
     Iterate on{state, 0.0};
-    for (int i = 0; i < kMostDetours && on.t != 1.0; ++i) {
+    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches; ++i) {
       Reached next = path_step(model, memory, ramp, on);
       add_effort(next.report, spent);
       const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
@@ -213,6 +217,10 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   }
   end.report.newton = spent.newton;
   end.report.times = spent.times;
+  if (touches && accepted(end.report.status) && beyond_alarm(memory.context, end.at.state)) {
+    end.report.status = Status::max_iterations;
+    end.report.detail = "it moves further in a step than contacts are looked for";
+  }
   if (!accepted(end.report.status)) return {state, end.report};
   end.at.state.path = {};
   return {std::move(end.at.state), end.report};

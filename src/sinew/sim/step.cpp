@@ -50,9 +50,7 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
-                Evaluation evaluation) {
-  Memory& memory = workspace.memory();
+StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state) {
   memory.context.set(state, command, h);
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
@@ -63,15 +61,24 @@ StepReport step(const Model& model, Workspace& workspace, const Command& command
     const Clock clock(spent);
     find_contacts(memory.context, iterate.state, memory.here.contacts());
   }
-  const Newton& wanted = model.scene.newton;
-  const bool fixed = wanted.iterations > 0;
-  NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
-  rules.evaluation = evaluation;
   // What is prescribed stands in the context already.
   StepReport report = newton([](double, StepContext&) {}, memory, rules, iterate);
   report.times.contact += spent;
   if (accepted(report.status)) std::swap(state, iterate.state);
   return report;
+}
+
+NewtonRules step_rules(const Model& model, Evaluation evaluation) {
+  const Newton& wanted = model.scene.newton;
+  const bool fixed = wanted.iterations > 0;
+  NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
+  rules.evaluation = evaluation;
+  return rules;
+}
+
+StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
+                Evaluation evaluation) {
+  return step_by(step_rules(model, evaluation), workspace.memory(), command, h, state);
 }
 
 StepResult step(const Model& model, Workspace& workspace, const Command& command, const State& state, double h) {

@@ -66,6 +66,31 @@ struct ContactReport {
   solve::CoulombResidual left;  ///< of the last one
 };
 
+/// What keeps a motor from doing more.
+enum class Limit { least_force, most_force, least_position, most_position, speed, force_rate };
+struct Bound {
+  int actuator = 0;  ///< of the model's
+  Limit limit = Limit::most_force;
+};
+
+/// What came of the scene's targets in a step.
+struct Aim {
+  enum class Outcome {
+    none,     ///< it had none
+    reached,  ///< all, within their tolerances
+    limited,  ///< limits of motors are in the way
+    nearest   ///< none is: this is the nearest that these motors can do, or have done so far in one step
+  };
+  Outcome outcome = Outcome::none;
+  double farthest = 0.0;       ///< [-] largest error of a target over its tolerance
+  std::vector<Bound> binding;  ///< limits that are in the way
+  std::vector<Bound> dropped;  ///< limits that others exclude, and that are broken as little as can be
+  /// No other commands within the limits would have done better in the last linearisation. Not known with friction, or
+  /// more than a dozen contacts: none around it would have.
+  bool certain = false;
+  int apart = -1;  ///< effector whose two are to press and are not near each other
+};
+
 struct StepReport {
   Status status = Status::rest;
   int newton = 0;          ///< linearisations made
@@ -77,6 +102,7 @@ struct StepReport {
   bool redundant = false;  ///< constraint rows depended on each other
   std::string detail;      ///< names what failed, for people
   ContactReport contact;
+  Aim aim;
   StageTimes times;
 };
 

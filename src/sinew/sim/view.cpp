@@ -148,8 +148,10 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
         sample_body(model, model.bodies[i].name, model.bodies[i].shape, {state.bodies[i].R, state.bodies[i].p}));
   for (const ObstacleModel& own : model.obstacles)
     view.bodies.push_back(sample_body(model, own.name, own.shape, compose(moved(model, state, own.frame), own.pose)));
-  for (const ContactState& own : state.contacts)
+  for (const ContactState& own : state.contacts) {
+    if (own.force.isZero()) continue;  // only watched
     view.contacts.push_back({own.point, force_on_second(own), own.on_second ? own.normal : Vec3(-own.normal)});
+  }
   for (std::size_t k = 0; k < model.points.size(); ++k) {
     if (!state.points[k].on) continue;
     view.sliding_points.push_back({"", solid_point(model, state, model.points[k].solid, model.points[k].where)});

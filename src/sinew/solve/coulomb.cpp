@@ -169,22 +169,32 @@ double Coulomb::evaluate(const CoulombProblem& problem, const Eigen::VectorXd& l
   return F_.squaredNorm();
 }
 
+/// Where Alart's and Curnier's function looks for the force along the tangents.
+Vector2d Coulomb::aim(const Eigen::VectorXd& lambda, int contact) const {
+  return lambda.segment<2>(3 * contact + 1) - scale_t_[contact] * u_.segment<2>(3 * contact + 1);
+}
+
+/// Of the disk there.
+double Coulomb::radius(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact) const {
+  return problem.mu[contact] * (lambda[3 * contact] - scale_n_[contact] * u_[3 * contact]);
+}
+
 /// A = dF/dlambda and B = dF/du of one contact that is pressed.
-void Coulomb::derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, Eigen::Matrix3d& A,
-                     Eigen::Matrix3d& B) const {
-  const auto k = 3 * contact;
-  const double pushed = lambda[k] - scale_n_[contact] * u_[k], mu = problem.mu[contact], rho = scale_t_[contact];
-  const Vector2d tau = lambda.segment<2>(k + 1) - rho * u_.segment<2>(k + 1);
-  const double radius = mu * pushed, r = tau.norm();
+void Coulomb::derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, bool sticks,
+                     Eigen::Matrix3d& A, Eigen::Matrix3d& B) const {
+  const double mu = problem.mu[contact], rho = scale_t_[contact];
+  const Vector2d tau = aim(lambda, contact);
+  const double r = tau.norm();
   A.setZero();
   B.setZero();
   B(0, 0) = scale_n_[contact];
-  if (r <= radius) {
+  if (sticks) {
     B(1, 1) = B(2, 2) = rho;
     return;
   }
-  const Vector2d d = tau / r;
-  const Eigen::Matrix2d across = (radius / r) * (Eigen::Matrix2d::Identity() - d * d.transpose());
+  const Vector2d d = r > 0.0 ? Vector2d(tau / r) : Vector2d(Vector2d::Zero());
+  const double part = r > 0.0 ? radius(problem, lambda, contact) / r : 0.0;
+  const Eigen::Matrix2d across = part * (Eigen::Matrix2d::Identity() - d * d.transpose());
   A.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() - across;
   A.bottomLeftCorner<2, 1>() = -mu * d;
   B.bottomRightCorner<2, 2>() = rho * across;
@@ -209,7 +219,7 @@ bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda)
     const int i = active_[a];
     const auto k = 3 * i, row = 3 * static_cast<int>(a);
     Eigen::Matrix3d A, B;
-    derive(problem, lambda, i, A, B);
+    derive(problem, lambda, i, aim(lambda, i).norm() <= radius(problem, lambda, i), A, B);
     for (std::size_t c = 0; c < active_.size(); ++c)
       J_.block<3, 3>(row, 3 * static_cast<int>(c)).noalias() = B * problem.D.block<3, 3>(k, 3 * active_[c]);
     const Eigen::Vector3d yields(yield_ / scale_n_[i], yield_ / scale_t_[i], yield_ / scale_t_[i]);
@@ -253,8 +263,7 @@ bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::Vec
   return false;
 }
 
-CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda) {
-  CoulombReport report;
+void Coulomb::measure(const CoulombProblem& problem) {
   const int n = problem.contacts();
   scale_n_.resize(n);
   scale_t_.resize(n);
@@ -263,6 +272,66 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     scale_n_[i] = own.normal;
     scale_t_[i] = own.tangent;
   }
+}
+
+void Coulomb::modes(const CoulombProblem& problem, const Eigen::VectorXd& lambda, std::vector<CoulombPiece>& modes) {
+  measure(problem);
+  yield_ = 0.0;
+  held_ = lambda;
+  evaluate(problem, lambda);
+  modes.resize(static_cast<std::size_t>(problem.contacts()));
+  double largest = 1e-300;
+  for (int i = 0; i < problem.contacts(); ++i)
+    largest = std::max({largest, lambda.segment<3>(3 * i).norm(), scale_n_[i] * std::abs(problem.b[3 * i])});
+  for (int i = 0; i < problem.contacts(); ++i) {
+    CoulombPiece& own = modes[static_cast<std::size_t>(i)];
+    own.normal = (lambda[3 * i] - scale_n_[i] * u_[3 * i]) / largest;
+    own.tangent = (radius(problem, lambda, i) - aim(lambda, i).norm()) / largest;
+    own.mode = !(own.normal > 0.0)                           ? CoulombPiece::Mode::open
+               : problem.mu[i] > 0.0 && !(own.tangent < 0.0) ? CoulombPiece::Mode::sticks
+                                                             : CoulombPiece::Mode::slips;
+  }
+}
+
+bool Coulomb::follow(const CoulombProblem& problem, const Eigen::VectorXd& lambda,
+                     const std::vector<CoulombPiece>& modes, const Eigen::MatrixXd& B, Eigen::MatrixXd& S) {
+  constexpr double kYields = 1e-10;
+  S.setZero(lambda.size(), B.cols());
+  active_.clear();
+  for (int i = 0; i < problem.contacts(); ++i) {
+    if (modes[static_cast<std::size_t>(i)].mode != CoulombPiece::Mode::open) active_.push_back(i);
+  }
+  if (active_.empty()) return true;
+  measure(problem);
+  yield_ = 0.0;
+  held_ = lambda;
+  evaluate(problem, lambda);
+  const auto n = static_cast<Eigen::Index>(3 * active_.size());
+  J_.resize(n, n);
+  sides_.resize(n, B.cols());
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const int i = active_[a], row = 3 * static_cast<int>(a);
+    Eigen::Matrix3d own_force, own_motion;
+    derive(problem, lambda, i, modes[static_cast<std::size_t>(i)].mode == CoulombPiece::Mode::sticks, own_force,
+           own_motion);
+    for (std::size_t c = 0; c < active_.size(); ++c)
+      J_.block<3, 3>(row, 3 * static_cast<int>(c)).noalias() =
+          own_motion * problem.D.block<3, 3>(3 * i, 3 * active_[c]);
+    const Eigen::Vector3d yields(kYields / scale_n_[i], kYields / scale_t_[i], kYields / scale_t_[i]);
+    J_.block<3, 3>(row, row) += own_force + own_motion * yields.asDiagonal();
+    sides_.middleRows<3>(row).noalias() = -own_motion * B.middleRows<3>(3 * i);
+  }
+  const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> lu(J_);
+  sides_ = lu.solve(sides_).eval();
+  if (!sides_.allFinite()) return false;
+  for (std::size_t a = 0; a < active_.size(); ++a)
+    S.middleRows<3>(3 * active_[a]) = sides_.middleRows<3>(static_cast<Eigen::Index>(3 * a));
+  return true;
+}
+
+CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda) {
+  CoulombReport report;
+  measure(problem);
   best_ = lambda;
   report.residual = residual(problem, lambda);
   const auto keep = [&] {

@@ -43,6 +43,14 @@ struct CoulombReport {
   CoulombResidual residual;
 };
 
+/// What a contact does, and how far it is from doing something else, in forces relative to the largest there is.
+struct CoulombPiece {
+  enum class Mode { open, sticks, slips };
+  Mode mode = Mode::open;
+  double normal = 0.0;   ///< 0 where it is about to open or to close
+  double tangent = 0.0;  ///< of a closed one: 0 where it is about to stick or to slip
+};
+
 /// Sweeps of block Gauss-Seidel find out what is open, sticks or slips, semi-smooth Newton on all contacts at once
 /// makes it exact; by turns until the tolerance is met. Keeps its memory.
 class Coulomb {
@@ -51,16 +59,26 @@ class Coulomb {
   /// found.
   CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda);
 
+  /// What each contact does at a solution.
+  void modes(const CoulombProblem& problem, const Eigen::VectorXd& lambda, std::vector<CoulombPiece>& modes);
+  /// d lambda / dp where b changes by B dp and contacts go on doing what `modes` says: the tangent of the laws, forces
+  /// that are not decided as small as they can be. False where it has none.
+  bool follow(const CoulombProblem& problem, const Eigen::VectorXd& lambda, const std::vector<CoulombPiece>& modes,
+              const Eigen::MatrixXd& B, Eigen::MatrixXd& S);
+
  private:
+  void measure(const CoulombProblem& problem);
+  Eigen::Vector2d aim(const Eigen::VectorXd& lambda, int contact) const;
   double evaluate(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
-  void derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, Eigen::Matrix3d& A,
-              Eigen::Matrix3d& B) const;
+  void derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, bool sticks,
+              Eigen::Matrix3d& A, Eigen::Matrix3d& B) const;
+  double radius(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact) const;
   bool step(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
   bool newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps);
 
   double yield_ = 0.0;
   Eigen::VectorXd u_, F_, step_, trial_, best_, held_, lost_, right_, scale_n_, scale_t_;
-  Eigen::MatrixXd J_;
+  Eigen::MatrixXd J_, sides_;
   std::vector<int> active_;
 };
 

@@ -1,0 +1,254 @@
+#include "sinew/sim/effectors.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sinew/lie/rotation.hpp"
+#include "sinew/sim/places.hpp"
+#include "sinew/sim/signals.hpp"
+
+namespace sinew {
+
+namespace {
+
+const OutputModel& output_of(const Model& model, const EffectorModel& own) { return model.outputs[own.output]; }
+
+/// [N/m] what is still apart lacks.
+constexpr double kPerGap = 100.0;
+
+rod::Mat3 turned_to(const Vec3& turn, const OutputModel& output) { return lie::exp(turn) * output.upright; }
+
+/// Rotation vectors change by this with the turn omega of what they tell: d exp(f) exp(f)^-1 = [V(f) df]x.
+rod::Mat3 of_turn(const Vec3& f) { return lie::RotationMap::tangent(f).matrix().inverse(); }
+
+}  // namespace
+
+Measure measure_of(const Model& model, const EffectorModel& effector) {
+  switch (output_of(model, effector).quantity) {
+    case Quantity::orientation:
+      return {std::numbers::pi / 180.0, "deg", "rad"};
+    case Quantity::strain:
+      return effector.strain < 3 ? Measure{1.0, "1/m", "1/m"} : Measure{0.01, "%", "-"};
+    default:
+      return output_of(model, effector).pair >= 0 ? Measure{0.1, "N/10", "N"} : Measure{};
+  }
+}
+
+int effector_size(const Model& model) {
+  return model.effectors.empty() ? 0 : model.effectors.back().first + model.effectors.back().size;
+}
+
+Eigen::VectorXd effector_value(const Model& model, const State& state, const EffectorModel& effector) {
+  const OutputModel& output = output_of(model, effector);
+  if (output.quantity == Quantity::orientation)
+    return lie::log(output_axes(model, state, output) * output.upright.transpose());
+  if (output.quantity == Quantity::strain)
+    return Eigen::VectorXd::Constant(
+        1, rod::strain(model.rods[output.rod].rod, state.rods[output.rod].q, output.abscissa)[effector.strain]);
+  if (output.pair >= 0) return Eigen::VectorXd::Constant(1, pressing_of(state, output.pair).force);
+  return output_position(model, state, output);
+}
+
+Pressing pressing_of(const State& state, int pair) {
+  Pressing own;
+  for (const ContactState& contact : state.contacts) {
+    if (contact.pair != pair) continue;
+    own.force += contact.force.dot(contact.normal);
+    own.gap = std::min(own.gap, contact.gap);
+  }
+  return own;
+}
+
+void goal_at(const Model& model, double time, Goal& goal) {
+  goal.at.resize(effector_size(model));
+  for (std::size_t k = 0; k < model.effectors.size(); ++k) {
+    const EffectorModel& own = model.effectors[k];
+    const Track* track = std::get_if<Track>(&model.scene.targets[k].at);
+    goal.at.segment(own.first, own.size) = track ? value_at(*track, time) : own.start;
+  }
+}
+
+Goal goal_at(const Model& model, double time) {
+  Goal goal;
+  goal_at(model, time, goal);
+  return goal;
+}
+
+void effector_errors(const Model& model, const State& state, const Goal& goal, Eigen::VectorXd& errors) {
+  errors.resize(effector_size(model));
+  for (const EffectorModel& own : model.effectors) {
+    const OutputModel& output = output_of(model, own);
+    const auto wanted = goal.at.segment(own.first, own.size);
+    if (output.quantity == Quantity::orientation) {
+      const rod::Mat3 aim = turned_to(wanted, output);
+      errors.segment<3>(own.first) = lie::log(output_axes(model, state, output) * aim.transpose());
+    } else if (output.pair >= 0) {
+      const Pressing now = pressing_of(state, output.pair);
+      const bool apart = now.force == 0.0 && wanted[0] > 0.0 && std::isfinite(now.gap);
+      errors[own.first] = now.force - wanted[0] - (apart ? kPerGap * std::max(0.0, now.gap) : 0.0);
+    } else if (own.size == 3) {
+      errors.segment<3>(own.first) = output_position(model, state, output) - wanted;
+    } else {
+      errors.segment(own.first, own.size) = effector_value(model, state, own) - wanted;
+    }
+  }
+}
+
+double error_of(const EffectorModel& own, const Eigen::VectorXd& errors) {
+  double sum = 0.0;
+  for (int i = 0; i < own.size; ++i) {
+    if (own.weights[i] > 0.0) sum += errors[own.first + i] * errors[own.first + i];
+  }
+  return std::sqrt(sum);
+}
+
+double farthest(const Model& model, const Eigen::VectorXd& errors) {
+  double most = 0.0;
+  for (const EffectorModel& own : model.effectors) {
+    const double off = error_of(own, errors) / own.tolerance;
+    most = off <= most ? most : off;  // (NaN stays)
+  }
+  return most;
+}
+
+void EffectorRows::look(const StepContext& context, const State& iterate, Linearization& here, const Goal& goal,
+                        const Eigen::VectorXd& errors) {
+  const Model& model = context.model;
+  iterate_ = &iterate;
+  own_.resize(model.effectors.size());
+  points_.resize(static_cast<Eigen::Index>(3 * model.watched.size()));
+  for (std::size_t k = 0; k < own_.size(); ++k) {
+    const EffectorModel& effector = model.effectors[k];
+    const OutputModel& output = output_of(model, effector);
+    Own& own = own_[k];
+    own.first = effector.first;
+    own.watched = effector.watched;
+    own.unknown = own.rod = own.nearest = -1;
+    own.apart = false;
+    own.pair = output.pair;
+    const bool strain = output.quantity == Quantity::strain;
+    if (output.solid < 0) own.over_points.setZero(effector.size, 0);
+    if ((output.body < 0 && output.rod < 0) || strain) own.over_z.setZero(effector.size, 0);
+    if (output.rod < 0) own.over_strains.setZero(effector.size, 0);
+    if (output.pair >= 0) {
+      own.apart = goal.at[effector.first] > 0.0;
+      for (const ContactState& contact : iterate.contacts)
+        own.apart &= contact.pair != output.pair || contact.force.isZero();
+      continue;
+    }
+    const bool turns = output.quantity == Quantity::orientation;
+    const rod::Mat3 turning = turns ? of_turn(errors.segment<3>(effector.first)) : rod::Mat3(rod::Mat3::Identity());
+    if (output.solid >= 0) {
+      own.over_points.setIdentity(3, 3);
+      if (turns) {
+        // F = R U: omega = R (tr U - U)^-1 w, with w the axial vector of R^T dF - dF^T R.
+        rod::Mat3 F;
+        for (int i = 0; i < 3; ++i) F.col(i) = solid_point(model, iterate, output.solid, output.axes[i]);
+        const rod::Mat3 R = output_axes(model, iterate, output), U = R.transpose() * F;
+        const rod::Mat3 map = turning * R * (U.trace() * rod::Mat3::Identity() - U).inverse();
+        own.over_points.resize(3, 9);
+        for (int i = 0; i < 3; ++i)
+          own.over_points.middleCols<3>(3 * i) = map * lie::hat(Vec3::Unit(i)) * R.transpose();
+      }
+    } else if (output.body >= 0) {
+      own.unknown = model.bodies[output.body].unknown;
+      own.over_z.setZero(3, 6);
+      own.over_z.middleCols<3>(turns ? 3 : 0) = turning;
+    } else if (output.rod >= 0) {
+      const RodModel& rod = model.rods[output.rod];
+      const rod::Configuration& shape = here.reduced().rods[output.rod].shape;
+      const int nb = rod.rod.base_coordinates();
+      own.rod = output.rod;
+      own.unknown = rod.unknown;
+      if (strain) {
+        own.over_strains.setZero(1, rod.rod.strain_coordinates());
+        const Eigen::VectorXd none = Eigen::VectorXd::Zero(nb + rod.rod.strain_coordinates());
+        const double at_rest = rod::strain(rod.rod, none, output.abscissa)[effector.strain];
+        for (Eigen::Index i = 0; i < own.over_strains.cols(); ++i)  // linear in q
+          own.over_strains(0, i) =
+              rod::strain(rod.rod, Eigen::VectorXd::Unit(none.size(), nb + i), output.abscissa)[effector.strain] -
+              at_rest;
+        continue;
+      }
+      const Eigen::Matrix3Xd J = turns ? Eigen::Matrix3Xd(turning * rod::twists_at(shape, output.abscissa).topRows<3>())
+                                       : rod::position_jacobian(shape, output.abscissa);
+      own.over_z = J.leftCols(nb);
+      own.over_strains = J.rightCols(rod.rod.strain_coordinates());
+    }
+  }
+}
+
+void EffectorRows::change_by(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> change) const {
+  change.setZero();
+  for (const Own& own : own_) {
+    auto part = change.segment(own.first, own.over_z.rows());
+    if (own.watched >= 0) part += own.over_points.lazyProduct(points_.segment(3 * own.watched, own.over_points.cols()));
+    if (own.over_z.cols() > 0) part += own.over_z.lazyProduct(solution.dz.segment(own.unknown, own.over_z.cols()));
+    if (own.over_strains.cols() > 0) part += own.over_strains.lazyProduct(solution.dq[own.rod]);
+  }
+}
+
+void EffectorRows::motion(Linearization& here, const solve::CoupledSolution& solution, bool pushed,
+                          Eigen::Ref<Eigen::VectorXd> change) {
+  here.watched_motion(solution.dlambda, pushed, points_);
+  change_by(solution, change);
+}
+
+void EffectorRows::choose_gaps(Linearization& here, const Eigen::MatrixXd& B) {
+  const ContactForces& contacts = here.contact_forces();
+  for (Own& own : own_) {
+    double least = INFINITY;
+    for (std::size_t c = 0; own.apart && c < contacts.touching().size(); ++c) {
+      const int number = contacts.touching()[c];
+      if (iterate_->contacts[number].pair != own.pair) continue;
+      const double gap = here.contacts().touches[number].u[0];
+      const double way = gap / std::max(B.row(static_cast<Eigen::Index>(3 * c)).norm(), 1e-300);
+      if (!(way < least)) continue;
+      least = way;
+      own.nearest = static_cast<int>(c);
+    }
+  }
+}
+
+void EffectorRows::force_errors(Linearization& here, const Goal& goal, Eigen::Ref<Eigen::VectorXd> errors) const {
+  for (const Own& own : own_) {
+    if (own.pair >= 0) errors[own.first] = -goal.at[own.first];
+  }
+  if (!here.touched()) return;
+  const ContactForces& contacts = here.contact_forces();
+  add_forces(here, contacts.found(), errors);
+  Eigen::VectorXd gaps = contacts.problem().D * contacts.found() + contacts.problem().b;
+  for (std::size_t c = 0; c < contacts.touching().size(); ++c)
+    gaps[static_cast<Eigen::Index>(3 * c)] += here.contacts().least[contacts.touching()[c]];
+  add_gaps(gaps, errors);
+}
+
+void EffectorRows::pressed(Linearization& here, const Eigen::VectorXd& forces, const Eigen::VectorXd& u,
+                           const solve::CoupledSolution& response, Eigen::Ref<Eigen::VectorXd> change) {
+  here.watched_motion(response.dlambda, false, points_);
+  here.pressed_motion(forces, points_);
+  change_by(response, change);
+  add_forces(here, forces, change);
+  add_gaps(u, change);
+}
+
+void EffectorRows::add_forces(const Linearization& here, const Eigen::VectorXd& forces,
+                              Eigen::Ref<Eigen::VectorXd> change) const {
+  const std::vector<int>& touching = here.contact_forces().touching();
+  for (const Own& own : own_) {
+    for (std::size_t c = 0; own.pair >= 0 && c < touching.size(); ++c) {
+      if (iterate_->contacts[touching[c]].pair == own.pair)
+        change[own.first] += forces[static_cast<Eigen::Index>(3 * c)];
+    }
+  }
+}
+
+void EffectorRows::add_gaps(const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> change) const {
+  for (const Own& own : own_) {
+    if (own.nearest >= 0) change[own.first] -= kPerGap * u[3 * own.nearest];
+  }
+}
+
+}  // namespace sinew
