@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/sim/places.hpp"
@@ -189,6 +190,244 @@ TEST_F(PaperInverse, FingerReachesItsCurveAndTheNearestPointOfIt) {
       if (off.isZero(0.0)) EXPECT_EQ(report.aim.outcome, Aim::Outcome::reached);
       EXPECT_GE(found.actuators[0], 0.0);
     }
+  }
+}
+
+/// Both tangents of both robots, pulled by forces and moved by displacements, against central differences.
+TEST_F(PaperInverse, JacobiansAreDifferences) {
+  struct Case {
+    const char* name;
+    Scene scene;
+    std::vector<double> force;
+    Driven driven;
+  };
+  const Scene finger_told = told(finger(kMeshes, 6, 7, Cable::cosserat), kFingerTip, 20.0);
+  const Scene trunk_told = told(trunk(kMeshes, 10), kTrunkTip, kMost);
+  for (const Case& own :
+       {Case{"finger", finger_told, {3.0}, Driven::force}, Case{"finger", finger_told, {3.0}, Driven::displacement},
+        Case{"trunk", trunk_told, {0.15, 0.05, 0.03, 0.02}, Driven::force},
+        Case{"trunk", trunk_told, {0.15, 0.05, 0.03, 0.02}, Driven::displacement}}) {
+    for (const bool at_equilibrium : {true, false}) {
+      // Where forces hold it at rest; then perhaps driven by the displacements that it has there.
+      Scene scene = still(own.scene);
+      scene.newton.tolerance = 1e-12;
+      const Model pulled = build(scene, io::read_mesh);
+      Workspace pulling = make_workspace(pulled);
+      const State rest = at_rest(pulled, pulling, own.force, initial_state(pulled));
+      for (auto& [name, actuator] : scene.actuators) actuator.driven = own.driven;
+      if (!at_equilibrium) {
+        scene.analysis = Analysis::dynamic;
+        scene.newton.iterations = 1;
+      }
+      const Model model = build(scene, io::read_mesh);
+      Workspace workspace = make_workspace(model);
+      std::vector<double> at = own.driven == Driven::force ? own.force : motor_positions(pulled, rest);
+      State from = initial_state(model);
+      if (at_equilibrium) {
+        from = at_rest(model, workspace, at, from);
+      } else {
+        for (int i = 1; i <= 60; ++i) {
+          std::vector<double> part = at;
+          for (double& command : part) command *= std::min(1.0, i / 50.0);
+          ASSERT_TRUE(accepted(step(model, workspace, {part, {}}, 0.01, from).status)) << own.name;
+        }
+      }
+      const Eigen::MatrixXd J =
+          actuator_jacobian(model, workspace, from, at_equilibrium ? JacobianOf::equilibrium : JacobianOf::step, 0.01)
+              .effectors;
+      const auto tip = [&](std::vector<double> commands, std::size_t a, double more) {
+        commands[a] += more;
+        if (at_equilibrium) return tip_of(model, at_rest(model, workspace, commands, from));
+        State next = from;
+        EXPECT_TRUE(accepted(step(model, workspace, {commands, {}}, 0.01, next).status));
+        return tip_of(model, next);
+      };
+      for (std::size_t a = 0; a < at.size(); ++a) {
+        const double e = own.driven == Driven::force ? 1e-3 * own.force[0] : 5e-4 * mm;
+        const Vec3 slope = (tip(at, a, e) - tip(at, a, -e)) / (2.0 * e);
+        EXPECT_LT((J.col(static_cast<Eigen::Index>(a)) - slope).norm(), 1e-5 * slope.norm())
+            << own.name << " " << a << " " << at_equilibrium << " " << (own.driven == Driven::force);
+      }
+    }
+  }
+}
+
+/// Targets within reach and far from it. The finger's one cable makes its tip go along a curve: what is found is the
+/// nearest point of it, and the status says what brute force says.
+TEST_F(PaperInverse, ThousandTargetsEndWithTheRightStatus) {
+  const double most = 12.0;
+  const Model model = build(still(told(finger(kMeshes, 6, 7, Cable::cosserat), kFingerTip, most)), io::read_mesh);
+  Workspace workspace = make_workspace(model);
+  std::vector<Vec3> curve;
+  State state = initial_state(model);
+  constexpr int kPoints = 600;
+  for (int i = 0; i <= kPoints; ++i) {
+    state = at_rest(model, workspace, {most * i / kPoints}, state);
+    curve.push_back(tip_of(model, state));
+  }
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal;
+  int counts[4] = {}, wrong = 0, farther = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const auto near = static_cast<std::size_t>(uniform(engine) * kPoints);
+    const double far = trial % 3 == 0 ? 0.02 * mm : trial % 3 == 1 ? 3 * mm : 30 * mm;
+    const Vec3 goal = curve[near] + far * Vec3(normal(engine), normal(engine), normal(engine));
+    State found = initial_state(model);
+    const StepReport report = inverse_equilibrium(model, workspace, {goal}, {{0.0}, {}}, 0.01, found);
+    ASSERT_TRUE(accepted(report.status)) << trial;
+    ASSERT_TRUE(finite(found)) << trial;
+    const double force = found.actuators[0];
+    EXPECT_GE(force, 0.0);
+    EXPECT_LE(force, most * (1.0 + 1e-9));
+    const double distance = (tip_of(model, found) - goal).norm();
+    EXPECT_NEAR(report.aim.farthest, distance / (0.1 * mm), 1e-9 * distance / mm + 1e-12);
+    double best = INFINITY;
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+      const Vec3 way = curve[i + 1] - curve[i];
+      const double t = std::clamp((goal - curve[i]).dot(way) / way.squaredNorm(), 0.0, 1.0);
+      best = std::min(best, (curve[i] + t * way - goal).norm());
+    }
+    farther += distance > best + 0.1 * mm;
+    // Where the curve has bent back, another part of it may be nearer; not the next one.
+    const auto own = static_cast<std::size_t>(std::lround(force / most * kPoints));
+    for (std::size_t i = own > 5 ? own - 5 : 0; i <= std::min<std::size_t>(own + 5, kPoints); ++i)
+      EXPECT_GE((curve[i] - goal).norm(), distance - 1e-6) << trial;
+    ++counts[static_cast<int>(report.aim.outcome)];
+    const bool reached = distance <= 0.1 * mm, at_limit = force < 1e-9 * most || force > most * (1.0 - 1e-9);
+    wrong += report.aim.outcome != (reached    ? Aim::Outcome::reached
+                                    : at_limit ? Aim::Outcome::limited
+                                               : Aim::Outcome::nearest);
+    if (best < 0.09 * mm) EXPECT_EQ(report.aim.outcome, Aim::Outcome::reached) << trial;
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LE(farther, 10);
+  RecordProperty("not_the_nearest_of_all", farther);
+  RecordProperty("reached", counts[1]);
+  RecordProperty("limited", counts[2]);
+  RecordProperty("nearest", counts[3]);
+  EXPECT_GT(std::min({counts[1], counts[2], counts[3]}), 50);
+}
+
+/// The same of the trunk in motion, by forces and by displacements that have limits of force: limits are kept.
+TEST_F(PaperInverse, ThousandTargetsInMotionKeepTheLimits) {
+  for (const Driven driven : {Driven::force, Driven::displacement}) {
+    Scene scene = told(trunk(kMeshes, 10), kTrunkTip, 0.5);
+    for (auto& [name, actuator] : scene.actuators) {
+      actuator.driven = driven;
+      actuator.limits.speed = 0.2;
+      actuator.limits.force_rate = 4.0;
+    }
+    const Model model = build(scene, io::read_mesh);
+    Workspace workspace = make_workspace(model);
+    State state = initial_state(model);
+    std::mt19937 engine(11);
+    std::normal_distribution<double> normal;
+    const double h = 0.01;
+    int outcomes[4] = {};
+    Vec3 goal = kTrunkTip, last = goal;
+    const Model slow = build(still(told(trunk(kMeshes, 10), kTrunkTip, 0.5)), io::read_mesh);
+    Workspace resting = make_workspace(slow);
+    State rest = initial_state(slow);
+    std::uniform_real_distribution<double> uniform(0.02, 0.06);
+    for (int trial = 0; trial < 500; ++trial) {
+      // By turns within reach, and anywhere.
+      if (trial % 25 == 0) last = goal;
+      if (trial % 50 == 0) {
+        rest = at_rest(slow, resting, {uniform(engine), uniform(engine), uniform(engine), uniform(engine)}, rest);
+        goal = tip_of(slow, rest);
+      }
+      if (trial % 50 == 25) goal = kTrunkTip + 8 * mm * Vec3(normal(engine), normal(engine), -std::abs(normal(engine)));
+      const std::vector<double> before = motor_positions(model, state);
+      const Vec3 now = last + smooth(std::min(1.0, trial % 25 / 20.0)) * (goal - last);
+      const StepReport report = inverse_step(model, workspace, {now}, command_of(model, state), h, state);
+      ASSERT_TRUE(accepted(report.status)) << trial << " " << to_string(report.status) << " " << report.detail;
+      ASSERT_TRUE(finite(state)) << trial;
+      ++outcomes[static_cast<int>(report.aim.outcome)];
+      const std::vector<double> after = motor_positions(model, state);
+      if (!report.aim.dropped.empty()) continue;
+      for (std::size_t a = 0; a < 4; ++a) {
+        // What is told keeps its limits to rounding, what is not as far as one linearisation sees.
+        const double slack = driven == Driven::force ? 1e-9 : 1e-3;
+        EXPECT_GE(state.actuators[a], -slack * 0.5) << trial;
+        EXPECT_LE(state.actuators[a], 0.5 * (1.0 + slack)) << trial;
+        const double speed = driven == Driven::displacement ? 1e-9 : 1e-2;
+        EXPECT_LE(std::abs(after[a] - before[a]), 0.2 * h * (1.0 + speed)) << trial;
+      }
+    }
+    EXPECT_GT(outcomes[1], 20);
+    EXPECT_GT(outcomes[2], 20);
+  }
+}
+
+Obstacle wall_at(const Vec3& point, const Vec3& normal) {
+  Obstacle wall;
+  wall.shape = PlaneShape{point, normal};
+  return wall;
+}
+
+void press(Scene& scene, double force) {
+  Output touch;
+  touch.between = {"body", "wall"};
+  scene.outputs.emplace_back("touch", touch);
+  Target target;
+  target.output = "touch";
+  target.at = Track{{0.0}, {Eigen::VectorXd::Constant(1, force)}};
+  scene.targets.push_back(target);
+}
+
+/// The finger closes on a wall 2 mm from it and presses as hard as it is told, in motion and at rest.
+TEST_F(PaperInverse, FingerPressesAWall) {
+  for (const bool moves : {false, true}) {
+    Scene scene = told(finger(kMeshes, 6, 7, Cable::cosserat), kFingerTip, 20.0);
+    scene.targets.clear();
+    scene.contact.friction = 0.5;
+    const Model free = build(still(told(finger(kMeshes, 6, 7, Cable::cosserat), kFingerTip, 20.0)), io::read_mesh);
+    const double side = initial_state(free).solids[0].x.row(1).maxCoeff();
+    scene.obstacles.emplace_back("wall", wall_at(Vec3(0, side + 2 * mm, 0), -Vec3::UnitY()));
+    press(scene, 0.3);
+    scene.actuators[0].second.limits.force_rate = 20.0;
+    scene.time = {0.01, 0.4};
+    const Model model = build(moves ? scene : still(scene), io::read_mesh);
+    double force = 0.0;
+    Aim aim;
+    const RunEnd end = run(model, initial_state(model), [&](const State& state, const StepReport& report) {
+      force = pressing_of(state, 0).force;
+      aim = report.aim;
+      return true;
+    });
+    EXPECT_EQ(end, RunEnd::done);
+    EXPECT_EQ(aim.outcome, Aim::Outcome::reached) << describe(model, aim);
+    EXPECT_NEAR(force, 0.3, 1e-4) << moves;
+  }
+}
+
+/// The trunk's tip follows a line along a plane at its side while it presses against it.
+TEST_F(PaperInverse, TrunkSlidesAlongAPlaneAsItPresses) {
+  for (const double friction : {0.0, 0.3}) {
+    Scene scene = still(told(trunk(kMeshes, 10), kTrunkTip, kMost, 0.05));
+    scene.contact.friction = friction;
+    scene.obstacles.emplace_back("wall", wall_at(Vec3(0, 30 * mm, 0), -Vec3::UnitY()));
+    scene.targets[0].weights = {1, 0, 0};
+    scene.targets[0].at =
+        Track{{0.0, 0.5, 1.0, 2.0}, {kTrunkTip, kTrunkTip, Vec3(15 * mm, 0, 0), Vec3(-15 * mm, 0, 0)}};
+    press(scene, 0.02);
+    scene.time = {0.1, 2.0};
+    const Model model = build(scene, io::read_mesh);
+    double worst = 0.0, off = 0.0;
+    const RunEnd end = run(model, initial_state(model), [&](const State& state, const StepReport& report) {
+      if (state.time < 0.49) return true;
+      EXPECT_EQ(report.aim.outcome, Aim::Outcome::reached) << state.time << " " << describe(model, report.aim);
+      worst = std::max(worst, std::abs(tip_of(model, state).x() - goal_at(model, state.time).at[0]));
+      off = std::max(off, std::abs(pressing_of(state, 0).force - 0.02));
+      for (const double force : state.actuators) EXPECT_GE(force, 0.0);
+      return true;
+    });
+    EXPECT_EQ(end, RunEnd::done);
+    EXPECT_LT(worst, 0.1 * mm) << friction;
+    EXPECT_LT(off, 0.01) << friction;
+    RecordProperty("tangent_mm_" + std::to_string(friction), std::to_string(worst / mm));
+    RecordProperty("force_off_" + std::to_string(friction), std::to_string(off));
   }
 }
 

@@ -230,6 +230,20 @@ bool Steering::descend(const SteeringProblem& problem, Point& at) {
   return true;
 }
 
+/// What has just slid as far as it did, and stays there if nothing changes, may slide on as well as stick: takes `at`
+/// along the best of sliding on.
+bool Steering::slide(const SteeringProblem& problem, Point& at) {
+  penalty_.setZero(problem.A.rows());
+  place(problem, at);
+  bool any = false;
+  for (CoulombPiece& own : at.modes) {
+    if (own.mode != Mode::sticks || own.tangent > kKink) continue;
+    own.mode = Mode::slips;
+    any = true;
+  }
+  return any && piece(problem, at, Stay::anywhere) && search(problem, at, 3);
+}
+
 /// Branch and bound over which contacts are open and which closed, without friction, of the nearest dozen. Takes `at`
 /// to the best there is, and returns what that leaves; no more is known where contacts were left out or there is none.
 std::optional<double> Steering::bound(const SteeringProblem& problem, Point& at) {
@@ -391,14 +405,19 @@ bool Steering::solve(const SteeringProblem& problem) {
     return here_.p.allFinite();
   }
   contacts_ = problem.contacts;
-  there_ = here_;
+  const Point start = here_;
   if (!descend(problem, here_)) return false;
-  const Eigen::VectorXd before = penalty_;
-  const std::optional<double> best = bound(problem, there_);
-  if (there_.p != here_.p && descend(problem, there_)) {
+  const auto try_from_there = [&] {
+    const Eigen::VectorXd before = penalty_;
+    if (there_.p == here_.p || !descend(problem, there_)) return;
     penalty_ = penalty_.cwiseMax(before);
     if (cost(there_) < cost(here_) * (1.0 - 1e-9)) std::swap(here_, there_);
-  }
+  };
+  there_ = start;
+  if (slide(problem, there_)) try_from_there();
+  there_ = start;
+  const std::optional<double> best = bound(problem, there_);
+  try_from_there();
   certain_ = best && problem.contacts.mu.isZero(0.0) &&
              0.5 * here_.e.squaredNorm() <= *best + 1e-6 * 0.5 * problem.e.squaredNorm();
   if (!piece(problem, here_, Stay::on_piece)) return here_.p.allFinite();

@@ -37,9 +37,10 @@ struct Broken {
 };
 
 /// Goes from piece to piece, the best of each by `Quadratic`, as long as that helps; where no piece next to it does
-/// better the solution is a local one. It is looked for from p = 0 and from where branch and bound takes up to a dozen
-/// contacts without friction: which of them are open and which closed is then decided for the whole, with a lower
-/// bound on what any other choice could reach. Keeps its memory.
+/// better the solution is a local one. It is looked for from p = 0, there with what is about to slide both sticking and
+/// sliding, and from where branch and bound takes up to a dozen contacts without friction: which of them are open and
+/// which closed is then decided for the whole, with a lower bound on what any other choice could reach. Keeps its
+/// memory.
 class Steering {
  public:
   /// False where nothing could be found: numbers that are none.
@@ -74,6 +75,7 @@ class Steering {
   bool relax(const SteeringProblem& problem, Point& at);
   bool search(const SteeringProblem& problem, Point& at, int halvings);
   bool descend(const SteeringProblem& problem, Point& at);
+  bool slide(const SteeringProblem& problem, Point& at);
   std::optional<double> bound(const SteeringProblem& problem, Point& at);
   void prefer(const SteeringProblem& problem);
 
