@@ -14,6 +14,7 @@ struct RunOptions {
   std::filesystem::path scene;
   std::filesystem::path output = "out";
   std::vector<std::string> overrides;
+  std::filesystem::path commands;  ///< a table that drives the actuators of its columns
   std::filesystem::path resume;
   bool force = false;
   bool quiet = false;

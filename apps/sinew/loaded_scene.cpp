@@ -12,13 +12,17 @@ namespace sinew::app {
 LoadedScene load(io::SceneFile file) {
   LoadedScene loaded;
   loaded.inputs.emplace_back(file.path.filename().string(), io::content_hash(file.text));
+  const auto note = [&loaded](const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << stream.rdbuf();
+    loaded.inputs.emplace_back(path.filename().string(), io::content_hash(bytes.str()));
+  };
+  for (const std::filesystem::path& table : file.tables) note(table);
   try {
-    loaded.model = build(file.scene, [&loaded](const std::filesystem::path& path) {
+    loaded.model = build(file.scene, [&note](const std::filesystem::path& path) {
       solid::Mesh mesh = io::read_mesh(path);
-      std::ifstream stream(path, std::ios::binary);
-      std::ostringstream bytes;
-      bytes << stream.rdbuf();
-      loaded.inputs.emplace_back(path.filename().string(), io::content_hash(bytes.str()));
+      note(path);
       return mesh;
     });
   } catch (const InputError& error) {

@@ -17,6 +17,7 @@ Examples:
   sinew run examples/finger.yaml -o out/finger        simulate, write tables, ParaView files and a picture
   sinew run finger.yaml -o out --set actuators.pull.displacement="5 mm" --set rods.cable.sections=30
   sinew run finger.yaml --profile --threads 1         where the time of a step goes
+  sinew run reach.yaml --commands out/commands.csv    the commands that were found, without looking for them again
   sinew run --resume out/finger                       go on with a run that was stopped
   sinew check finger.yaml                             what the engine makes of a scene; does not run it
   sinew info finger.vtk                               sizes and quality of a mesh
@@ -39,10 +40,14 @@ int main(int argc, char** argv) {
   CLI::Option* set =
       run->add_option("--set", options.overrides, "Change the scene: path=value, as in time.step=\"5 ms\"")
           ->type_name("PATH=VALUE");
+  CLI::Option* replay = run->add_option("--commands", options.commands,
+                                        "Drive actuators by the columns of this CSV table, as commands.csv of a run "
+                                        "with targets, which are then left out");
   run->add_option("--resume", options.resume, "Go on with the run recorded in this folder")
       ->excludes(scene)
       ->excludes(output)
-      ->excludes(set);
+      ->excludes(set)
+      ->excludes(replay);
   run->add_flag("--force", options.force, "Replace the results of an earlier run in the folder");
   run->add_flag("-q,--quiet", options.quiet, "No progress");
   run->add_flag("--profile", options.profile, "Show at the end where the time went, stage by stage");

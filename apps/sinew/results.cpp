@@ -186,6 +186,9 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
   const Model& model = loaded.model;
   io::write_signals_csv(folder / "signals.csv", recording);
   write_report(folder / "report.json", loaded, recording, summary);
+  std::vector<std::string> commands;
+  for (const int sought : model.sought) commands.push_back(command_name(model.actuators[sought]));
+  if (!commands.empty()) io::write_columns_csv(folder / "commands.csv", recording, commands);
 
   // About 100 frames a run, or one per `view.interval`; the last state always.
   const std::size_t count = recording.steps.size();
@@ -220,9 +223,13 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
     io::draw_picture(folder / "picture.png", snapshot(model, unpack(model, first.state), first.status),
                      snapshot(model, unpack(model, last.state), status), options);
   }
-  return {"picture.png        the end state", "signals.csv        outputs and motors over time",
-          "paraview/run.pvd   the motion, for ParaView", "report.json        sizes, status of every step, times",
-          "run.sinew          the recording, for --resume and export"};
+  std::vector<std::string> files = {
+      "picture.png        the end state", "signals.csv        outputs and motors over time",
+      "paraview/run.pvd   the motion, for ParaView", "report.json        sizes, status of every step, times",
+      "run.sinew          the recording, for --resume and export"};
+  if (!commands.empty())
+    files.insert(files.begin() + 2, "commands.csv       what the motors are to do, for sinew run --commands");
+  return files;
 }
 
 std::string profile(const RunSummary& summary) {

@@ -8,6 +8,7 @@
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
+#include "sinew/io/csv_table.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/results.hpp"
 #include "sinew/sim/effectors.hpp"
@@ -169,6 +170,24 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
   return end == RunEnd::done ? kDone : end == RunEnd::stopped ? kNumericalStop : kInterrupted;
 }
 
+/// Changes of a scene that let a table of commands drive it.
+void add_commands(const std::filesystem::path& table, const io::SceneFile& file, std::vector<std::string>& overrides) {
+  const std::string path = std::filesystem::absolute(table).lexically_normal().string();
+  for (const std::string& column : io::csv_columns(table)) {
+    if (column == "time") continue;
+    const std::size_t dot = column.rfind('.');
+    const std::string name = column.substr(0, dot), kind = dot == std::string::npos ? "" : column.substr(dot + 1);
+    if ((kind != "force" && kind != "displacement" && kind != "torque" && kind != "angle") ||
+        !file.lines.contains("actuators." + name))
+      throw InputError({table.string(), 1, "", column, "is no command of an actuator of this scene",
+                        "columns are `time` and commands such as pull.force, pull.displacement, turn.angle"});
+    const bool tension = kind == "force" && file.lines.contains("actuators." + name + ".tension");
+    const char* const key = tension ? "tension" : kind.c_str();
+    overrides.push_back(fmt::format("actuators.{}.{}={{file: \"{}\", column: {}}}", name, key, path, column));
+  }
+  overrides.emplace_back("targets={}");
+}
+
 /// The scene of a recording, as it was when it was recorded.
 LoadedScene load_recorded(const io::Recording& recording, const std::filesystem::path& path) {
   const io::RecordingHeader& header = recording.header;
@@ -209,7 +228,10 @@ int run_scene(const RunOptions& options) {
   if (!options.resume.empty()) return resume(options);
   if (options.scene.empty())
     throw InputError({"", 0, "", "", "no scene was given", "sinew run SCENE -o FOLDER, or sinew run --resume FOLDER"});
-  LoadedScene loaded = load(io::read_scene(options.scene, options.overrides));
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.commands.empty())
+    add_commands(options.commands, io::read_scene(options.scene, options.overrides), overrides);
+  LoadedScene loaded = load(io::read_scene(options.scene, overrides));
   const std::filesystem::path path = recording_path(options.output);
   if (std::filesystem::exists(path) && !options.force) {
     throw InputError(

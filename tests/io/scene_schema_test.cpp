@@ -1,6 +1,9 @@
 // The JSON Schema says what the reader does.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -19,6 +22,37 @@ using Json = nlohmann::json;
 SceneFile parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_scene(text, "finger.yaml", "scenes", overrides);
 }
+
+/// A scene in which all that changes over time comes from a file, or a formula.
+class TableFile {
+ public:
+  TableFile() : path_(std::filesystem::temp_directory_path() / ("sinew_table_" + std::to_string(getpid()) + ".csv")) {
+    std::ofstream(path_) << "t,v\n0,1\n1,2\n";
+  }
+  ~TableFile() { std::filesystem::remove(path_); }
+  TableFile(const TableFile&) = delete;
+  TableFile& operator=(const TableFile&) = delete;
+
+  std::string scene() const {
+    const std::string file = "{file: '" + path_.string() + "', column: v, time: t}",
+                      files = "{file: '" + path_.string() + "', columns: [v, v, v], time: t}";
+    std::string text = inverse_scene;
+    const std::size_t from = text.find("actuators:"), to = text.find("outputs:"), targets = text.find("targets:");
+    std::string moved = "actuators:\n", loads = "loads:\n";
+    int count = 0;
+    for (const std::string& drive : {file, std::string("{formula: 2 * t}")}) {
+      for (const char* kind : {"force", "displacement", "torque", "angle"})
+        moved += "  m" + std::to_string(++count) + ": {rod: cable, " + kind + ": " + drive + "}\n";
+      moved += "  m" + std::to_string(++count) + ": {rod: cable, tendon: {distance: 1 mm}, tension: " + drive + "}\n";
+      loads += "  l" + std::to_string(count) + ": {rod: cable, at: 10 mm, force: [1, 0, 0], factor: " + drive + "}\n";
+    }
+    return text.substr(0, from) + moved + loads + text.substr(to, targets - to) + "targets:\n  tip: {at: " + files +
+           "}\n  nail: {at: {formula: [0, t, 0]}}\n  bend: {at: " + file + "}\n";
+  }
+
+ private:
+  std::filesystem::path path_;
+};
 
 /// Paths of all keys that a schema lists; "*" for a name the user chooses and for the elements of a list.
 void collect(const Json& schema, const std::string& path, std::set<std::string>& keys) {
@@ -65,7 +99,10 @@ TEST(SceneSchema, ListsExactlyTheKeysOfTheReader) {
   EXPECT_EQ(schema.at("$schema"), "https://json-schema.org/draft/2020-12/schema");
   std::set<std::string> listed, read, refused;
   collect(schema, "", listed);
-  for (const char* text : {full_scene, rods_scene, solids_scene, bodies_scene, other_scene, inverse_scene}) {
+  const TableFile table;
+  const std::string tables_scene = table.scene();
+  for (const std::string& text : std::vector<std::string>{full_scene, rods_scene, solids_scene, bodies_scene,
+                                                          other_scene, inverse_scene, tables_scene}) {
     parse(text);  // so every key below is one the reader knows
     Used used;
     collect(parse_document(text, "scene"), "", "", used);

@@ -431,5 +431,54 @@ TEST_F(PaperInverse, TrunkSlidesAlongAPlaneAsItPresses) {
   }
 }
 
+/// What was found for the motors drives a robot without targets along the same path, by forces and by displacements, in
+/// motion and at rest.
+TEST_F(PaperInverse, ReplayedCommandsReproduceThePath) {
+  const Model direct = build(still(told(trunk(kMeshes, 10), kTrunkTip, kMost, kTension)), io::read_mesh);
+  const Track path = reached_by(direct, kCurves[1], 200, 2.0);
+  for (const Driven driven : {Driven::force, Driven::displacement}) {
+    for (const bool moves : {true, false}) {
+      Scene scene = told(trunk(kMeshes, 10), kTrunkTip, kMost, kTension);
+      for (auto& [name, actuator] : scene.actuators) actuator.driven = driven;
+      scene.time = {0.01, 2.0};
+      if (!moves) scene = still(scene);
+      scene.targets[0].at = path;
+      const Model model = build(scene, io::read_mesh);
+      std::vector<Vec3> tips;
+      std::vector<Table> tables(4);
+      const auto note = [&](const State& state) {
+        const Command command = command_of(model, state);
+        for (std::size_t a = 0; a < 4; ++a) {
+          tables[a].times.push_back(state.time);
+          tables[a].values.push_back(command.actuators[a]);
+        }
+      };
+      note(initial_state(model));
+      EXPECT_EQ(run(model, initial_state(model),
+                    [&](const State& state, const StepReport&) {
+                      note(state);
+                      tips.push_back(tip_of(model, state));
+                      return true;
+                    }),
+                RunEnd::done);
+      for (std::size_t a = 0; a < 4; ++a) scene.actuators[a].second.drive = tables[a];
+      scene.targets.clear();
+      const Model again = build(scene, io::read_mesh);
+      double worst = 0.0;
+      std::size_t at = 0;
+      EXPECT_EQ(run(again, initial_state(again),
+                    [&](const State& state, const StepReport&) {
+                      worst = std::max(worst, (tip_of(again, state) - tips.at(at++)).norm());
+                      return true;
+                    }),
+                RunEnd::done);
+      EXPECT_EQ(at, tips.size());
+      EXPECT_LT(worst, 1e-6) << moves << " " << (driven == Driven::force);
+      RecordProperty(std::string(moves ? "moves" : "rests") + (driven == Driven::force ? "_force" : "_displacement"),
+                     std::to_string(worst * 1e9) + " nm");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sinew::test

@@ -105,6 +105,21 @@ std::optional<At> At::object(const std::string& group, const std::string& name) 
   return at.child(name);
 }
 
+std::optional<At> At::top(const std::string& key) const {
+  if (find(*root_, key) == nullptr) return {};
+  At at = *this;
+  at.node_ = root_;
+  at.path_.clear();
+  at.key_ = nullptr;
+  return at.child(key);
+}
+
+std::filesystem::path At::use(const std::string& name) const {
+  const std::filesystem::path path = folder_ / name;
+  if (used_ != nullptr && std::find(used_->begin(), used_->end(), path) == used_->end()) used_->push_back(path);
+  return path;
+}
+
 void At::refuse(std::string rule, std::string remedy) const {
   if (remedy.empty() && key_ != nullptr) remedy = help(*key_);
   throw InputError({.file = line_ > 0 ? file_ : "--set",

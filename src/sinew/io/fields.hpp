@@ -5,6 +5,7 @@
 // `name_of` the name of another object of the file. The scene_*.cpp are written in these words.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -38,7 +39,10 @@ std::string help(const Key& key);
 /// A value in the document, with the way to it; whoever finds a fault in it refuses it here.
 class At {
  public:
-  At(const Node& root, std::string file) : root_(&root), node_(&root), file_(std::move(file)), line_(root.line) {}
+  /// Files that the document names are looked for in `folder`, and listed in `used`.
+  At(const Node& root, std::string file, std::filesystem::path folder = {},
+     std::vector<std::filesystem::path>* used = nullptr)
+      : root_(&root), node_(&root), file_(std::move(file)), folder_(std::move(folder)), used_(used), line_(root.line) {}
 
   const Node& node() const { return *node_; }
   const std::string& path() const { return path_; }
@@ -54,6 +58,11 @@ class At {
   /// The keys of the map that the document has under `group`; none if there is no such map.
   std::vector<std::string> names_in(const std::string& group) const;
 
+  /// What the document has under a key, if it does.
+  std::optional<At> top(const std::string& key) const;
+  /// Where a file lies that is read for this document.
+  std::filesystem::path use(const std::string& name) const;
+
   /// An object of the document by its group and name, if there is one.
   std::optional<At> object(const std::string& group, const std::string& name) const;
 
@@ -66,6 +75,8 @@ class At {
   const Node* root_;
   const Node* node_;
   std::string file_;
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path>* used_ = nullptr;
   std::string path_;
   int line_ = 0;
   std::shared_ptr<const Key> key_;

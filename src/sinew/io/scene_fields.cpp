@@ -12,14 +12,6 @@ namespace {
 
 using enum Need;
 
-Type<Time> time_of_run() {
-  return map<Time>({"time",
-                    {field<Time>({"step", optional, "the time step [s]", "10 ms"}, &Time::step,
-                                 quantity(Dimension::time, above(0.0))),
-                     field<Time>({"duration", optional, "the time at which the run ends [s]", "2 s"}, &Time::duration,
-                                 quantity(Dimension::time, at_least(0.0)))}});
-}
-
 Type<int> iterations() {
   const Type<int> count = whole_number(1, 1000);
   const auto read = [=](const At& at) {

@@ -33,7 +33,7 @@ SceneFile parse_scene(const std::string& text, const std::filesystem::path& name
     for (const std::string& assignment : overrides) set_value(root, assignment);
   }
   SceneFile file;
-  file.scene = scene_type().read(At(root, name.string()));
+  file.scene = scene_type().read(At(root, name.string(), folder, &file.tables));
   file.scene.folder = folder.empty() ? "." : folder;
   file.text = overrides.empty() ? text : write_document(root);
   file.path = name;

@@ -15,6 +15,7 @@ struct SceneFile {
   std::string text;                  ///< YAML of this very scene: the file's bytes, rewritten if there were overrides
   std::map<std::string, int> lines;  ///< field path ("solids.finger.mesh", "couplings.0") to line; 0 if overridden
   std::filesystem::path path;        ///< as it was given, for messages
+  std::vector<std::filesystem::path> tables;  ///< files with numbers over time that have been read for it
 };
 
 /// Each override is "path=value", as "solids.finger.material.young=500 kPa" or "couplings.0.slide.points=31"; the value

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sinew/io/samples.hpp"
+
 namespace sinew::io {
 namespace {
 
@@ -70,6 +72,19 @@ Type<Pose> pose() {
        check});
 }
 
+Type<Time> time_of_run() {
+  return map<Time>({"time",
+                    {field<Time>({"step", optional, "the time step [s]", "10 ms"}, &Time::step,
+                                 quantity(Dimension::time, above(0.0))),
+                     field<Time>({"duration", optional, "the time at which the run ends [s]", "2 s"}, &Time::duration,
+                                 quantity(Dimension::time, at_least(0.0)))}});
+}
+
+Time time_of_run(const At& at) {
+  const std::optional<At> own = at.top("time");
+  return own ? time_of_run().read(*own) : Time{};
+}
+
 Type<std::vector<double>> times() { return list<double>("times", quantity(Dimension::time), {1}, check_ascending); }
 
 Type<std::vector<Vec3>> points(Count count) {
@@ -100,6 +115,7 @@ Type<Drive> drive(Dimension dimension) {
        {},
        [](const Table& t, const At& at) { check_one_per_time(t.values.size(), t.times.size(), at.child("values")); }});
   const auto read = [=](const At& at) -> Drive {
+    if (const std::optional<Samples> own = samples(at, 1)) return Table{own->times, own->values[0]};
     if (at.is(Node::Kind::map)) return table.read(at);
     if (at.is(Node::Kind::scalar) && at.node().text == "external") return External{};
     const bool word = at.is(Node::Kind::scalar) && at.node().text.find_first_of("0123456789") == std::string::npos;
@@ -108,7 +124,9 @@ Type<Drive> drive(Dimension dimension) {
     }
     return Table{{0.0}, {value.read(at)}};
   };
-  return {read, [=] { return any_of({value.schema(), Json{{"const", "external"}}, table.schema()}); }};
+  return {read, [=] {
+            return any_of({value.schema(), Json{{"const", "external"}}, table.schema(), samples_schema(1)});
+          }};
 }
 
 Type<Drive> motor_drive(Dimension dimension) {
@@ -162,11 +180,20 @@ Type<Track> track(Dimension dimension, int components) {
             &Track::values, list<Eigen::VectorXd>("values, one per time", value, {1}))},
        {},
        [](const Track& t, const At& at) { check_one_per_time(t.values.size(), t.times.size(), at.child("values")); }});
+  const auto size = static_cast<std::size_t>(components);
   const auto read = [=](const At& at) {
+    if (const std::optional<Samples> own = samples(at, size)) {
+      Track track{own->times, {}};
+      for (std::size_t i = 0; i < own->times.size(); ++i) {
+        Eigen::VectorXd& at_time = track.values.emplace_back(components);
+        for (std::size_t k = 0; k < size; ++k) at_time[static_cast<Eigen::Index>(k)] = own->values[k][i];
+      }
+      return track;
+    }
     if (at.is(Node::Kind::map)) return table.read(at);
     return Track{{0.0}, {value.read(at)}};
   };
-  return {read, [=] { return any_of({value.schema(), table.schema()}); }};
+  return {read, [=] { return any_of({value.schema(), table.schema(), samples_schema(size)}); }};
 }
 
 Type<std::variant<int, std::vector<double>>> count_or_lengths(int least, bool from_zero) {

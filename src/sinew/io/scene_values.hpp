@@ -15,6 +15,9 @@ Type<std::vector<Vec3>> points(Count count);  ///< [m], no two neighbours the sa
 Type<In> in();
 Type<Pose> pose();
 Type<std::filesystem::path> file_name();
+/// The `time` of the document.
+Time time_of_run(const At& at);
+Type<Time> time_of_run();
 Type<std::vector<double>> times();               ///< ascending
 Type<std::vector<double>> lengths(Count count);  ///< ascending, not negative
 Type<Drive> drive(Dimension dimension);

@@ -43,4 +43,23 @@ void write_signals_csv(const std::filesystem::path& path, const Recording& recor
   AppendFile(path, AppendFile::Start::empty).append(text);
 }
 
+void write_columns_csv(const std::filesystem::path& path, const Recording& recording,
+                       const std::vector<std::string>& names) {
+  const std::vector<std::string>& all = recording.header.signal_names;
+  std::vector<std::size_t> columns;
+  std::string text = "time";
+  for (const std::string& name : names) {
+    columns.push_back(static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin()));
+    text += "," + cell(name);
+  }
+  text += "\n";
+  for (const RecordedStep& step : recording.steps) {
+    fmt::format_to(std::back_inserter(text), "{:.17g}", step.time);
+    for (const std::size_t column : columns)
+      fmt::format_to(std::back_inserter(text), ",{:.17g}", step.signals.at(column));
+    text += "\n";
+  }
+  AppendFile(path, AppendFile::Start::empty).append(text);
+}
+
 }  // namespace sinew::io

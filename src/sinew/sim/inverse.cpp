@@ -250,6 +250,11 @@ Aim Inverse::aim(const Model& model, const State& state) {
   return aim;
 }
 
+std::string command_name(const ActuatorModel& actuator) {
+  const bool force = actuator.row < 0;
+  return actuator.name + (actuator.turns() ? (force ? ".torque" : ".angle") : (force ? ".force" : ".displacement"));
+}
+
 std::string describe(const Model& model, const Bound& bound) {
   const ActuatorModel& own = model.actuators[bound.actuator];
   const bool turns = own.turns();
@@ -393,6 +398,14 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
     }
   }
   inverse.reach = INFINITY;
+  if (!remembers) {
+    // The whole way in one, as whoever is told these commands goes it.
+    StepResult whole = equilibrium_step(model, workspace, told, state, time);
+    spent.newton += whole.report.newton;
+    spent.times += whole.report.times;
+    if (accepted(whole.report.status) && merit_of(model, whole.next, goal) <= merit * (1.0 + 1e-6) + 1e-8)
+      at = std::move(whole);
+  }
   StepReport report = at.report;
   report.newton = spent.newton;
   report.times = spent.times;
@@ -442,8 +455,8 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
   }
   for (const int actuator : model.sought) {
     const ActuatorModel& own = model.actuators[actuator];
-    result.columns.push_back(own.name + (own.row < 0 ? (own.turns() ? ".torque [N m]" : ".force [N]")
-                                                     : (own.turns() ? ".angle [rad]" : ".displacement [m]")));
+    result.columns.push_back(command_name(own) +
+                             (own.row < 0 ? (own.turns() ? " [N m]" : " [N]") : (own.turns() ? " [rad]" : " [m]")));
   }
   return result;
 }

@@ -12,6 +12,9 @@ namespace sinew {
 /// "actuators.pull: force at most 10 N"
 std::string describe(const Model& model, const Bound& bound);
 
+/// "pull.force": what an actuator is told, as signals call it.
+std::string command_name(const ActuatorModel& actuator);
+
 /// "reached", or what keeps the effectors from their goals; empty without targets.
 std::string describe(const Model& model, const Aim& aim);
 
