@@ -22,7 +22,17 @@ struct RunOptions {
   int threads = 0;  ///< 0: two, if the machine has them
 };
 
+struct WorkspaceOptions {
+  std::filesystem::path scene;
+  std::filesystem::path output = "out";
+  std::vector<std::string> overrides;
+  int samples = 300;
+  bool quiet = false;
+  int threads = 1;
+};
+
 int run_scene(const RunOptions& options);
+int map_workspace(const WorkspaceOptions& options);
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
 int describe_mesh(const std::filesystem::path& path);
 int export_run(const std::filesystem::path& folder);

@@ -19,6 +19,7 @@ Examples:
   sinew run finger.yaml --profile --threads 1         where the time of a step goes
   sinew run reach.yaml --commands out/commands.csv    the commands that were found, without looking for them again
   sinew run --resume out/finger                       go on with a run that was stopped
+  sinew workspace reach.yaml -o out --samples 500     where the motors can bring the tip
   sinew check finger.yaml                             what the engine makes of a scene; does not run it
   sinew info finger.vtk                               sizes and quality of a mesh
   sinew schema > sinew.schema.json                    JSON Schema of scene files, for editors
@@ -61,6 +62,20 @@ int main(int argc, char** argv) {
   check->add_option("scene", checked, "Scene file (YAML)")->required();
   check->add_option("--set", check_overrides, "Change the scene: path=value")->type_name("PATH=VALUE");
 
+  sinew::app::WorkspaceOptions reach;
+  CLI::App* workspace = program.add_subcommand(
+      "workspace",
+      "Find what targets can be brought to: equilibria all over the limits of actuators that are `inverse`");
+  workspace->add_option("scene", reach.scene, "Scene file (YAML)")->required();
+  workspace->add_option("-o,--output", reach.output, "Folder for workspace.csv and workspace.png")
+      ->capture_default_str();
+  workspace->add_option("--samples", reach.samples, "How many equilibria")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  workspace->add_option("--set", reach.overrides, "Change the scene: path=value")->type_name("PATH=VALUE");
+  workspace->add_flag("-q,--quiet", reach.quiet, "No progress");
+  workspace->add_option("--threads", reach.threads, "Threads that share an equilibrium")->check(CLI::Range(1, 64));
+
   std::filesystem::path mesh;
   CLI::App* info =
       program.add_subcommand("info", "Sizes and quality of a mesh (legacy VTK, VTU, Gmsh MSH; surfaces: STL, OBJ)");
@@ -79,10 +94,10 @@ int main(int argc, char** argv) {
                        [word](const CLI::App* command) { return command->get_name() == word; });
   };
   if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
-    fmt::print(
-        stderr,
-        "{}: is not a command of sinew\n    the commands are run, check, info, export, schema; see sinew --help\n",
-        argv[1]);
+    fmt::print(stderr,
+               "{}: is not a command of sinew\n    the commands are run, workspace, check, info, export, schema; see "
+               "sinew --help\n",
+               argv[1]);
     return sinew::app::kBadInput;
   }
   try {
@@ -92,6 +107,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (*run) return sinew::app::run_scene(options);
+    if (*workspace) return sinew::app::map_workspace(reach);
     if (*check) return sinew::app::check_scene(checked, check_overrides);
     if (*info) return sinew::app::describe_mesh(mesh);
     if (*views) return sinew::app::export_run(recorded);

@@ -19,7 +19,7 @@ TEST(Program, HelpShowsCommandsExamplesAndExitCodes) {
                  {"run", "check", "info", "export", "schema", "Examples:", "sinew run examples/finger.yaml -o", "--set",
                   "--resume", "130 interrupted", "3 numerical stop", "2 bad input"});
   }
-  for (const char* command : {"run", "check", "info", "export", "schema"}) {
+  for (const char* command : {"run", "workspace", "check", "info", "export", "schema"}) {
     const Finished done = sinew({command, "--help"});
     EXPECT_EQ(done.code, 0) << said(done);
     EXPECT_GT(done.out.size(), 50u) << command;
@@ -284,7 +284,7 @@ TEST(Run, TheExampleToItsEnd_slow) {
 TEST(Documents, every_scene_in_them_is_sound) {
   const Folder folder;
   std::filesystem::create_directory_symlink(examples() / "meshes", folder / "meshes");
-  for (const auto& [name, least] : {std::pair("rods.md", 4), {"solids.md", 4}, {"contact.md", 2}}) {
+  for (const auto& [name, least] : {std::pair("rods.md", 4), {"solids.md", 4}, {"contact.md", 2}, {"inverse.md", 1}}) {
     std::istringstream text(read_file(examples().parent_path() / "docs" / name));
     int count = 0;
     std::string block;
@@ -305,6 +305,69 @@ TEST(Documents, every_scene_in_them_is_sound) {
     }
     EXPECT_GE(count, least) << name;
   }
+}
+
+/// What was found for the motors leads the tip along the same way, without targets.
+TEST(Inverse, CommandsOfARunDriveItAgain) {
+  const Folder folder;
+  const std::string scene = (examples() / "reach.yaml").string(), out = (folder / "out").string(),
+                    again = (folder / "again").string(), table = out + "/commands.csv";
+  const Finished found = sinew({"run", scene, "-o", out, "--set", "time.duration=0.5 s"});
+  ASSERT_EQ(found.code, 0) << said(found);
+  EXPECT_NE(found.out.find("Targets reached in 50 of 50 steps; at the end reached"), std::string::npos) << said(found);
+  EXPECT_NE(found.out.find("commands.csv"), std::string::npos);
+  const std::vector<std::string> commands = lines_of(read_file(table));
+  ASSERT_EQ(commands.size(), 52u);
+  EXPECT_EQ(commands[0], "time,pull_right.force,pull_back.force,pull_left.force,pull_front.force");
+  const Finished driven = sinew({"run", scene, "-o", again, "-q", "--set", "time.duration=0.5 s", "--commands", table});
+  ASSERT_EQ(driven.code, 0) << said(driven);
+  EXPECT_FALSE(std::filesystem::exists(again + "/commands.csv"));
+  const auto last = [](const std::string& file) {
+    std::vector<double> tip;
+    const std::vector<std::string> rows = lines_of(read_file(file));
+    std::vector<std::string> names, cells;
+    for (auto [text, into] : {std::pair(rows.front(), &names), {rows.back(), &cells}}) {
+      std::istringstream stream(text);
+      for (std::string cell; std::getline(stream, cell, ',');) into->push_back(cell);
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == "tip.x" || names[i] == "tip.y" || names[i] == "tip.z") tip.push_back(std::stod(cells.at(i)));
+    }
+    return tip;
+  };
+  const std::vector<double> one = last(out + "/signals.csv"), other = last(again + "/signals.csv");
+  ASSERT_EQ(one.size(), 3u);
+  EXPECT_GT(std::abs(one[1]), 1e-3);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(one[i], other.at(i), 1e-9);
+  // The recording goes on by itself, and knows when its table has changed.
+  EXPECT_EQ(sinew({"run", "--resume", again}).code, 0);
+  std::ofstream(table, std::ios::app) << "9,0,0,0,0\n";
+  EXPECT_EQ(sinew({"run", "--resume", again}).code, 2);
+  const Finished wrong = sinew({"run", scene, "-o", again, "--force", "--commands", out + "/signals.csv"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("signals.csv:1: status: is no command of an actuator"), std::string::npos) << said(wrong);
+}
+
+TEST(Inverse, TheWorkspaceIsMapped) {
+  const Folder folder;
+  const std::string scene = (examples() / "reach.yaml").string(), out = (folder / "out").string();
+  const Finished done =
+      sinew({"workspace", scene, "-o", out, "--samples", "20", "--set", "actuators.pull_left.limits.force=[0 N, 1 N]"});
+  ASSERT_EQ(done.code, 0) << said(done);
+  EXPECT_NE(done.out.find("workspace.csv"), std::string::npos);
+  const std::vector<std::string> rows = lines_of(read_file(folder / "out/workspace.csv"));
+  ASSERT_EQ(rows.size(), 21u);
+  EXPECT_TRUE(rows[0].starts_with("status,within,pull_right.displacement,pull_right.force,")) << rows[0];
+  EXPECT_TRUE(rows[0].ends_with(",tip.x,tip.y,tip.z")) << rows[0];
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_TRUE(rows[i].starts_with("converged,1,")) << rows[i];
+    EXPECT_EQ(std::count(rows[i].begin(), rows[i].end(), ','), std::count(rows[0].begin(), rows[0].end(), ','));
+  }
+  EXPECT_GT(std::filesystem::file_size(folder / "out/workspace.png"), 10000u);
+  const Finished open = sinew({"workspace", scene, "-o", out, "--set", "actuators.pull_left.limits={speed: 1 m/s}"});
+  EXPECT_EQ(open.code, 2);
+  EXPECT_NE(open.err.find("actuators.pull_left.limits"), std::string::npos) << said(open);
+  EXPECT_EQ(sinew({"workspace", (examples() / "finger.yaml").string(), "-o", out}).code, 2);
 }
 
 TEST(Examples, AllRunAndLeaveTheirResults) {

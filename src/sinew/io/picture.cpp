@@ -249,6 +249,22 @@ Area area_of(const std::vector<Sight>& sights, const PictureView& view) {
           std::min<double>(kPictureHeight, area.bottom)};
 }
 
+/// From the farthest to the nearest; returns the largest value.
+double draw_cloud(const Page& page, const std::vector<CloudPoint>& cloud, const PictureView& view) {
+  double largest = 0.0;
+  std::vector<std::pair<Vec3, double>> places;
+  for (const CloudPoint& own : cloud) {
+    if (!drawable(own.at)) continue;
+    places.emplace_back(view.project(own.at), own.value);
+    largest = std::max(largest, own.value);
+  }
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first.z() < b.first.z(); });
+  const double radius = std::clamp(60.0 / std::sqrt(static_cast<double>(places.size()) + 1.0), 3.0, 6.0);
+  for (const auto& [place, value] : places)
+    page.disc(place.head<2>(), radius, viridis(largest > 0.0 ? value / largest : 0.0), 0.6, kWhite);
+  return largest;
+}
+
 }  // namespace
 
 PictureView picture_view(const Snapshot& rest, const Snapshot& end, const PictureOptions& options) {
@@ -257,7 +273,10 @@ PictureView picture_view(const Snapshot& rest, const Snapshot& end, const Pictur
 
 void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const Snapshot& end,
                   const PictureOptions& options) {
-  const std::vector<Sight> sights = sights_of(rest, end);
+  std::vector<Sight> sights = sights_of(rest, end);
+  for (const CloudPoint& own : options.cloud) {
+    if (drawable(own.at)) sights.push_back({own.at, 0.0});
+  }
   const PictureView view = choose_view(sights, options.up, kScene);
   const Area area = area_of(sights, view);
   const bool rods_orange = !end.solids.empty();
@@ -301,11 +320,15 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
     draw_sliding_points(page, end.sliding_points, view);
     draw_contacts(page, end.contacts, view);
     draw_outputs(page, rest, end, view);
+    if (!options.cloud.empty()) {
+      const double largest = draw_cloud(page, options.cloud, view);
+      draw_legend(page, kLegend, options.cloud_name, largest, {1.0, options.cloud_unit}, false);
+    }
     draw_triad(page, view, {120, 905});
     draw_scale_bar(page, view, 230, 940);
   }
   draw_key(page, rest, end, rods_orange);
-  if (!all.empty()) {
+  if (!all.empty() && options.cloud.empty()) {
     const bool stress = options.color == PictureColor::von_mises;
     draw_legend(page, kLegend, stress ? "von Mises" : "displacement", scale.largest,
                 stress ? stress_unit(scale.largest) : length_unit(scale.largest), scale.open);

@@ -12,8 +12,17 @@ namespace sinew::io {
 
 enum class PictureColor { displacement, von_mises };
 
+/// A point of a cloud, coloured by a value.
+struct CloudPoint {
+  Eigen::Vector3d at;
+  double value = 0.0;
+};
+
 struct PictureOptions {
   std::string title;
+  /// Drawn over the picture, with a legend of their own in place of that of displacements.
+  std::vector<CloudPoint> cloud = {};
+  std::string cloud_name = {}, cloud_unit = {};
   PictureColor color = PictureColor::displacement;
   Eigen::Vector3d up = Eigen::Vector3d::Zero();  ///< upright on the page, as against gravity; zero: chosen
 };
