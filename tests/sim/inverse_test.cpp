@@ -368,6 +368,83 @@ TEST_F(Inverse, StepJacobianIsTheDifferenceOfLinearSteps) {
   }
 }
 
+/// How outputs give way to forces and moments on them, motors held as they are told, against loads in the scene.
+TEST_F(Inverse, ComplianceIsTheDifferenceOfEquilibriaUnderLoads) {
+  for (const bool displacement : {false, true}) {
+    Scene scene = hinged();
+    scene.targets = {wish("middle"), wish("turn"), wish("corner")};
+    Output corner;
+    corner.solid = "body";
+    corner.point.x = Vec3(50 * mm, 10 * mm, 10 * mm);
+    scene.outputs.emplace_back("corner", corner);
+    scene.analysis = Analysis::quasi_static;
+    scene.newton.iterations = 0;
+    scene.newton.tolerance = 1e-12;
+    if (displacement) drive_by_displacement(scene);
+    // The loads are off at first.
+    for (int axis = 0; axis < 3; ++axis) {
+      RodLoad force;
+      force.rod = "other";
+      force.at = 25 * mm;
+      force.force = Vec3::Unit(axis);
+      force.factor = External{};
+      scene.loads.emplace_back("force" + std::to_string(axis), force);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      RodLoad moment;
+      moment.rod = "other";
+      moment.at = 25 * mm;
+      moment.moment = Vec3::Unit(axis);
+      moment.factor = External{};
+      scene.loads.emplace_back("moment" + std::to_string(axis), moment);
+    }
+    Robot robot(scene);
+    const std::vector<double> at = displacement ? std::vector{0.3 * mm, 0.8 * mm} : std::vector{1.0, 3.0};
+    const auto rest = [&](const std::vector<double>& loads) {
+      Workspace own = make_workspace(robot.model);
+      const StepResult result = equilibrium_step(robot.model, own, {at, loads}, initial_state(robot.model), 0.02);
+      EXPECT_TRUE(accepted(result.report.status));
+      return result.next;
+    };
+    const std::vector<double> none(6, 0.0);
+    const State start = rest(none);
+    const ActuatorJacobian found =
+        actuator_jacobian(robot.model, robot.workspace, start, JacobianOf::equilibrium, 0.02);
+    ASSERT_EQ(found.compliance.rows(), 9);
+    EXPECT_LT((found.compliance - found.compliance.transpose()).norm(), 1e-9 * found.compliance.norm());
+    Eigen::VectorXd where(9);
+    for (const EffectorModel& own : robot.model.effectors)
+      where.segment(own.first, own.size) = effector_value(robot.model, start, own);
+    for (std::size_t load = 0; load < 6; ++load) {
+      const double e = load < 3 ? 1e-4 : 1e-6;
+      std::vector<double> more = none, less = none;
+      more[load] = e;
+      less[load] = -e;
+      Eigen::VectorXd ahead, behind;
+      effector_errors(robot.model, rest(more), {where}, ahead);
+      effector_errors(robot.model, rest(less), {where}, behind);
+      const Eigen::VectorXd slope = (ahead - behind) / (2.0 * e),
+                            column = found.compliance.col(static_cast<Eigen::Index>(load));
+      for (const EffectorModel& own : robot.model.effectors)
+        EXPECT_LT((column - slope).segment(own.first, own.size).norm(),
+                  1e-4 * slope.segment(own.first, own.size).norm())
+            << displacement << " " << load << " " << robot.model.outputs[own.output].name;
+    }
+  }
+}
+
+TEST(Manipulability, IsTheEllipsoidOfAJacobian) {
+  Eigen::MatrixXd J(3, 2);
+  J << 2, 0, 0, 0.5, 0, 0;
+  const Manipulability own = manipulability(J);
+  EXPECT_NEAR(own.gains[0], 2.0, 1e-14);
+  EXPECT_NEAR(own.gains[1], 0.5, 1e-14);
+  EXPECT_NEAR(own.measure, 1.0, 1e-14);
+  EXPECT_LT((J * own.commands - own.directions * own.gains.asDiagonal()).norm(), 1e-14);
+  J.col(1) = 3.0 * J.col(0);
+  EXPECT_NEAR(manipulability(J).measure, 0.0, 1e-14);
+}
+
 TEST_F(Inverse, EquilibriaAreTheNearestThereAre) {
   Scene scene = two_cables(4.0);
   scene.analysis = Analysis::quasi_static;

@@ -25,6 +25,13 @@ struct Row {
 }
 
 std::vector<Row> rows_of(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMostBytes = 1'000'000'000;
+  std::error_code failed;
+  if (std::filesystem::exists(path, failed)) {
+    if (!std::filesystem::is_regular_file(path, failed)) refuse(path, 0, "", "is no file", "give a CSV file");
+    if (std::filesystem::file_size(path, failed) > kMostBytes)
+      refuse(path, 0, "", "is larger than 1 GB", "keep only the columns and rows that are needed");
+  }
   const std::string text = read_text(path);
   std::vector<Row> rows;
   int line = 1;

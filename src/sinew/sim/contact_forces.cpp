@@ -199,14 +199,9 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     problem_.b.segment<3>(3 * i) = own.u;
     old_.segment<3>(3 * i) = own.force;
   }
-  motion(solution, problem_.b);
-  for (std::size_t s = 0; s < free.size(); ++s) {
-    if (rows_of_[s].empty()) continue;
-    own_ = free[s].contact_motion(context.model.solids[s], context.model, solution.dlambda);
-    for (std::size_t i = 0; i < rows_of_[s].size(); ++i)
-      problem_.b[rows_of_[s][i]] += own_[static_cast<Eigen::Index>(i)];
-  }
-  problem_.b -= problem_.D * old_;
+  rows_.resize(n);
+  motion_of(context, free, solution, true, rows_);
+  problem_.b += rows_ - problem_.D * old_;
   lambda_ = old_;
   rows_ = iterate.lambda + solution.dlambda;
   for (int turn = 0; turn < kMostTurns; ++turn) {
@@ -264,12 +259,14 @@ void ContactForces::change(const StepContext& context, const ContactRoom& room, 
 }
 
 void ContactForces::motion_of(const StepContext& context, std::vector<FreeMotion>& free,
-                              const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) {
+                              const solve::CoupledSolution& solution, bool pushed, Eigen::Ref<Eigen::VectorXd> u) {
   u.setZero();
   motion(solution, u);
   for (std::size_t s = 0; s < free.size(); ++s) {
     if (rows_of_[s].empty()) continue;
-    own_ = free[s].coupled_motion(context.model.solids[s], context.model, solution.dlambda);
+    const SolidModel& model = context.model.solids[s];
+    own_ = pushed ? free[s].contact_motion(model, context.model, solution.dlambda)
+                  : free[s].coupled_motion(model, context.model, solution.dlambda);
     for (std::size_t i = 0; i < rows_of_[s].size(); ++i) u[rows_of_[s][i]] += own_[static_cast<Eigen::Index>(i)];
   }
 }

@@ -37,9 +37,10 @@ class ContactForces {
   void change(const StepContext& context, const ContactRoom& room, std::vector<FreeMotion>& free,
               solve::CoupledFactor& factor, const Eigen::VectorXd& moved, const Eigen::VectorXd& lambda,
               solve::CoupledSolution& solution, ContactChange& change);
-  /// How a solution of the reduced problem, volumes included but without forces on them, moves the rows [m].
+  /// How a solution of the reduced problem, volumes included and, if they still stand (`pushed`), forces on them, moves
+  /// the rows [m].
   void motion_of(const StepContext& context, std::vector<FreeMotion>& free, const solve::CoupledSolution& solution,
-                 Eigen::Ref<Eigen::VectorXd> u);
+                 bool pushed, Eigen::Ref<Eigen::VectorXd> u);
   /// What forces at the rows change of the reduced solution, and of watched points (added) by themselves.
   const solve::CoupledSolution& response_to(const StepContext& context, std::vector<FreeMotion>& free,
                                             solve::CoupledFactor& factor, const Eigen::VectorXd& forces);

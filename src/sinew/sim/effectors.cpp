@@ -196,6 +196,30 @@ void EffectorRows::motion(Linearization& here, const solve::CoupledSolution& sol
   change_by(solution, change);
 }
 
+void EffectorRows::force_on(const Model& model, int component, std::vector<Eigen::VectorXd>& solids,
+                            solve::RightSide& side) const {
+  for (std::size_t i = 0; i < solids.size(); ++i) solids[i].setZero(model.solids[i].body.unknowns);
+  clear(model, side);
+  for (const Own& own : own_) {
+    const Eigen::Index row = component - own.first;
+    if (row < 0 || row >= own.over_z.rows()) continue;
+    for (Eigen::Index j = 0; j < own.over_points.cols(); ++j) {
+      const auto point = static_cast<std::size_t>(own.watched + j / 3);
+      const WatchedPoint& watched = model.watched[point];
+      const solid::Body& body = model.solids[watched.solid].body;
+      const solid::Cell& cell = body.cells[watched.where.element];
+      for (std::size_t k = 0; k < cell.nodes().size(); ++k) {
+        const int unknown = body.unknown(j % 3, cell.nodes()[k]);
+        if (unknown >= 0)
+          solids[watched.solid][unknown] +=
+              own.over_points(row, j) * watched.where.weights[static_cast<Eigen::Index>(k)];
+      }
+    }
+    if (own.over_z.cols() > 0) side.r.segment(own.unknown, own.over_z.cols()) -= own.over_z.row(row).transpose();
+    if (own.over_strains.cols() > 0) side.chains[own.rod] -= own.over_strains.row(row).transpose();
+  }
+}
+
 void EffectorRows::choose_gaps(Linearization& here, const Eigen::MatrixXd& B) {
   const ContactForces& contacts = here.contact_forces();
   for (Own& own : own_) {

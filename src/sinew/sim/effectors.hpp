@@ -56,6 +56,8 @@ class EffectorRows {
  public:
   void look(const StepContext& context, const State& iterate, Linearization& here, const Goal& goal,
             const Eigen::VectorXd& errors);
+  /// A force (or moment, or what works on a strain) of 1 on one component: on unknowns of volumes, and in a right side.
+  void force_on(const Model& model, int component, std::vector<Eigen::VectorXd>& solids, solve::RightSide& side) const;
   /// Of what is apart, the contact that commands close first: they move contacts by the columns of B.
   void choose_gaps(Linearization& here, const Eigen::MatrixXd& B);
   /// The errors of forces, by contacts as the linearisation has found them.

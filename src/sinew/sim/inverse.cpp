@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
@@ -64,14 +65,13 @@ void Inverse::begin(const Model& model, const State& start, const Goal& goal, do
 
 // The step is linear in the commands and in forces at contacts: its solution is that of the commands as they are plus
 // p_a times the answer to one more unit of each, and so with forces.
-void Inverse::look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment,
-                   bool pushed) {
+void Inverse::look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment) {
   const Model& model = context.model;
   const auto n = static_cast<Eigen::Index>(model.sought.size());
   effector_errors(model, iterate, goal_, error_);
   rows_.look(context, iterate, here, goal_, error_);
   base_.resize(error_.size());
-  rows_.motion(here, increment.reduced, pushed, base_);
+  rows_.motion(here, increment.reduced, true, base_);
   base_ += error_;
   const Eigen::Index rows = here.touched() ? here.contact_forces().found().size() : 0;
   responses_.resize(model.sought.size());
@@ -102,7 +102,7 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
     rows_.motion(here, response, false, J_.col(a));
     tell_motors(response, F_.col(a), X_.col(a));
     (model.actuators[actuator].row < 0 ? F_ : X_)(a, a) = 1.0;
-    if (rows > 0) here.contact_motion(response, problem_.B.col(a));
+    if (rows > 0) here.contact_motion(response, false, problem_.B.col(a));
   }
   if (rows > 0) {
     rows_.choose_gaps(here, problem_.B);
@@ -124,6 +124,29 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
     tell_motors(response, F_pressed_.col(k), X_pressed_.col(k));
   }
   S_ = steering_.reaction(problem_);
+}
+
+Eigen::MatrixXd Inverse::compliance(const Model& model, Linearization& here) {
+  const Eigen::Index n = error_.size();
+  Eigen::MatrixXd C(n, n);
+  std::vector<Eigen::VectorXd> forces(model.solids.size());
+  solve::CoupledSolution response;
+  Eigen::MatrixXd moved(problem_.held.size(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    rows_.force_on(model, static_cast<int>(i), forces, unit_);
+    here.couple(forces, unit_, response);
+    if (!response.ok) {
+      C.setConstant(NAN);
+      return C;
+    }
+    rows_.motion(here, response, true, C.col(i));
+    if (moved.rows() > 0) here.contact_motion(response, true, moved.col(i));
+  }
+  if (moved.rows() == 0) return C;
+  const Eigen::MatrixXd B = std::exchange(problem_.B, moved);
+  C += L_ * steering_.reaction(problem_);
+  problem_.B = B;
+  return C;
 }
 
 void Inverse::set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution) {
@@ -175,7 +198,7 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
 }
 
 void Inverse::steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment) {
-  look(context, iterate, here, increment, true);
+  look(context, iterate, here, increment);
   problem_.e = weights_.cwiseProduct(base_);
   problem_.J = weights_.asDiagonal() * J_;
   problem_.L = weights_.asDiagonal() * L_;
@@ -345,6 +368,23 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   return memory.increment.reduced.ok;
 }
 
+/// Linearises the first round of a step of h, as the paper's.
+bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
+                    const Linearization::Steer& steer) {
+  StepContext& context = memory.context;
+  context.set(start, command, h);
+  first_guess(context, memory.iterate.state);
+  follow_points(context, memory.iterate.state, memory.room);
+  find_contacts(context, memory.iterate.state, memory.here.contacts());
+  place_held(context, memory.iterate.state);
+  memory.here.evaluate(context, memory.iterate.state, times);
+  std::string failed;
+  if (!memory.here.finite() || !memory.here.factor(solid::Tangent::definite, Linearization::Wanted::any, failed))
+    return false;
+  memory.here.solve(memory.increment, steer);
+  return memory.increment.reduced.ok;
+}
+
 double merit_of(const Model& model, const State& state, const Goal& goal) {
   Eigen::VectorXd errors;
   effector_errors(model, state, goal, errors);
@@ -414,6 +454,11 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   return report;
 }
 
+Manipulability manipulability(const Eigen::MatrixXd& jacobian) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.singularValues(), svd.matrixU(), svd.matrixV(), svd.singularValues().prod()};
+}
+
 ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
                                    double h) {
   if (model.sought.empty() || model.effectors.empty())
@@ -426,22 +471,16 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
     goal.at.segment(own.first, own.size) = effector_value(model, state, own);
   inverse.begin(model, state, goal, h);
   const Command command = command_of(model, state);
-  bool ok = true;
   StageTimes times;
+  Eigen::MatrixXd compliance;
   const auto look = [&](Increment& increment) {
-    inverse.look(memory.context, memory.iterate.state, memory.here, increment, true);
+    inverse.look(memory.context, memory.iterate.state, memory.here, increment);
+    compliance = inverse.compliance(model, memory.here);
   };
-  if (of == JacobianOf::equilibrium) {
-    ok = linearize_at(memory, state, state, command, state.time, times, look);
-  } else {
-    // A copy of the state makes the step.
-    NewtonRules rules{1, true};
-    rules.inverse = &inverse;
-    State copy = state;
-    ok = accepted(step_by(rules, memory, command, h, copy).status);
-  }
+  const bool ok = of == JacobianOf::equilibrium ? linearize_at(memory, state, state, command, state.time, times, look)
+                                                : linearize_step(memory, state, command, h, times, look);
   if (!ok || !inverse.jacobian().allFinite()) throw std::runtime_error("actuator_jacobian: a matrix is singular");
-  ActuatorJacobian result{inverse.jacobian(), inverse.force_change(), inverse.position_change(), {}, {}};
+  ActuatorJacobian result{inverse.jacobian(), compliance, inverse.force_change(), inverse.position_change(), {}, {}};
   for (const EffectorModel& own : model.effectors) {
     const OutputModel& output = model.outputs[own.output];
     const bool strain = output.rod >= 0 && output.quantity == Quantity::strain, press = output.pair >= 0;

@@ -44,8 +44,9 @@ class Inverse {
   double reach = INFINITY;
 
   /// Responses to one more unit of each sought command, and of forces at contacts, at `here`, factored.
-  void look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment,
-            bool pushed);
+  void look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment);
+  /// How effectors give way to forces on them, contacts going on as they are. What was pushed no longer stands then.
+  Eigen::MatrixXd compliance(const Model& model, Linearization& here);
   /// Those of effectors, of the motors' forces and of their places, contacts going on as they are.
   Eigen::MatrixXd jacobian() const { return J_ + L_ * S_; }
   Eigen::MatrixXd force_change() const { return F_ + F_pressed_ * S_; }
@@ -86,9 +87,19 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
 /// slipping.
 struct ActuatorJacobian {
   Eigen::MatrixXd effectors;               ///< of the components of all effectors, a row each [SI]
+  Eigen::MatrixXd compliance;              ///< of the same by forces on them: m/N, rad/(N m), ... motors go on as told
   Eigen::MatrixXd forces, positions;       ///< of the motors themselves [N or N m], [m or rad]
   std::vector<std::string> rows, columns;  ///< "tip.x [m]", "pull.force [N]"
 };
+
+/// In how many independent directions a Jacobian's effectors can be moved, and how well.
+struct Manipulability {
+  Eigen::VectorXd gains;       ///< of effectors by a unit of commands, descending: the half axes of an ellipsoid
+  Eigen::MatrixXd directions;  ///< of effectors, a column each
+  Eigen::MatrixXd commands;    ///< that move them there, a column each, of length 1
+  double measure = 0.0;        ///< product of the gains (Yoshikawa): 0 in a singular posture
+};
+Manipulability manipulability(const Eigen::MatrixXd& jacobian);
 
 /// `step`: of where one linearisation takes the effectors in a step of h from a state, (14); what a controller of that
 /// rate sees. `equilibrium`: of where they come to rest, by the exact tangent of an equilibrium; h does not matter.

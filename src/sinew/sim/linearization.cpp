@@ -177,6 +177,13 @@ void Linearization::solve(const Linearization& right, Increment& increment, cons
   follow(pushes_, side_, increment, steer);
 }
 
+void Linearization::couple(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side,
+                           solve::CoupledSolution& solution) {
+  const Model& model = context_->model;
+  for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
+  factor_.solve(side, solution);
+}
+
 void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment) {
   const Clock clock(times_->solve);
   const Model& model = context_->model;

@@ -72,16 +72,18 @@ class Linearization {
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
   void couple(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.solve(side, solution); }
+  /// The same with forces [N] on each volume's unknowns, which then stand in place of those that `solve` has pushed.
+  void couple(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, solve::CoupledSolution& solution);
   /// How multipliers move watched points [m], and, while the last forces on volumes still stand (`pushed`), these.
   void watched_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion);
 
   /// Contacts and rubbing points are part of what is solved here.
   bool touched() const { return contacts_ready_; }
   const ContactForces& contact_forces() const { return contact_forces_; }
-  /// How a reduced solution moves their rows [m]; how forces on these change the reduced solution, and watched points
-  /// (added).
-  void contact_motion(const solve::CoupledSolution& solution, Eigen::Ref<Eigen::VectorXd> u) {
-    contact_forces_.motion_of(*context_, free_, solution, u);
+  /// How a reduced solution, and the last forces on volumes if they still stand (`pushed`), move their rows [m]; how
+  /// forces on these change the reduced solution, and watched points (added).
+  void contact_motion(const solve::CoupledSolution& solution, bool pushed, Eigen::Ref<Eigen::VectorXd> u) {
+    contact_forces_.motion_of(*context_, free_, solution, pushed, u);
   }
   const solve::CoupledSolution& press(const Eigen::VectorXd& forces) {
     return contact_forces_.response_to(*context_, free_, factor_, forces);

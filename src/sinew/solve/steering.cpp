@@ -421,7 +421,10 @@ bool Steering::solve(const SteeringProblem& problem) {
   certain_ = best && problem.contacts.mu.isZero(0.0) &&
              0.5 * here_.e.squaredNorm() <= *best + 1e-6 * 0.5 * problem.e.squaredNorm();
   if (!piece(problem, here_, Stay::on_piece)) return here_.p.allFinite();
+  const Eigen::VectorXd pulls = pulls_, strength = strength_;
   prefer(problem);
+  pulls_ = pulls;  // what is in the way of effectors, not of the wish
+  strength_ = strength;
   return here_.p.allFinite() && here_.lambda.allFinite();
 }
 
