@@ -12,6 +12,7 @@
 #include "sinew/io/signals_csv.hpp"
 #include "sinew/io/vtu.hpp"
 #include "sinew/sim/inverse.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"

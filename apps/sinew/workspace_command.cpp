@@ -13,6 +13,7 @@
 #include "sinew/loaded_scene.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/sim/effectors.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/view.hpp"
 
@@ -28,8 +29,8 @@ std::string header_of(const Model& model) {
   std::string row = "status,within";
   for (const int sought : model.sought) {
     const ActuatorModel& own = model.actuators[sought];
-    row += "," + own.name + (own.turns() ? ".angle" : ".displacement");
-    row += "," + own.name + (own.turns() ? ".torque" : ".force");
+    const MotorWords words = words_of(own);
+    row += "," + own.name + "." + words.position + "," + own.name + "." + words.force;
   }
   for (const EffectorModel& own : model.effectors) {
     const std::string& name = model.outputs[own.output].name;
@@ -121,8 +122,9 @@ int map_workspace(const WorkspaceOptions& options) {
     Snapshot rest = snapshot(model, initial_state(model), "rest");
     rest.outputs.clear();
     rest.sliding_points.clear();
-    picture.cloud_name = model.actuators[model.sought[0]].turns() ? "largest torque" : "largest force";
-    picture.cloud_unit = model.actuators[model.sought[0]].turns() ? "N m" : "N";
+    const MotorWords words = words_of(model.actuators[model.sought[0]]);
+    picture.cloud_name = std::string("largest ") + words.force;
+    picture.cloud_unit = words.force_unit;
     io::draw_picture(options.output / "workspace.png", rest, rest, picture);
   }
   if (!options.quiet) {

@@ -382,21 +382,13 @@ TEST_F(Inverse, ComplianceIsTheDifferenceOfEquilibriaUnderLoads) {
     scene.newton.tolerance = 1e-12;
     if (displacement) drive_by_displacement(scene);
     // The loads are off at first.
-    for (int axis = 0; axis < 3; ++axis) {
-      RodLoad force;
-      force.rod = "other";
-      force.at = 25 * mm;
-      force.force = Vec3::Unit(axis);
-      force.factor = External{};
-      scene.loads.emplace_back("force" + std::to_string(axis), force);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      RodLoad moment;
-      moment.rod = "other";
-      moment.at = 25 * mm;
-      moment.moment = Vec3::Unit(axis);
-      moment.factor = External{};
-      scene.loads.emplace_back("moment" + std::to_string(axis), moment);
+    for (int i = 0; i < 6; ++i) {  // forces along the axes, then moments about them
+      RodLoad load;
+      load.rod = "other";
+      load.at = 25 * mm;
+      (i < 3 ? load.force : load.moment) = Vec3::Unit(i % 3);
+      load.factor = External{};
+      scene.loads.emplace_back("load" + std::to_string(i), load);
     }
     Robot robot(scene);
     const std::vector<double> at = displacement ? std::vector{0.3 * mm, 0.8 * mm} : std::vector{1.0, 3.0};

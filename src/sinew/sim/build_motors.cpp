@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/places.hpp"
 
 namespace sinew::building {
 
@@ -39,8 +40,9 @@ void set_limits(const Actuator& actuator, const std::string& path, ActuatorModel
   const bool pulls = actuator.tendon || (!turns && !actuator.axis);
   own.force = limits.force.value_or(Span{pulls ? 0.0 : -INFINITY, INFINITY});
   own.position = limits.displacement;
-  check_span(own.force, path + ".limits." + (turns ? "torque" : "force"), turns ? "N m" : "N");
-  check_span(own.position, path + ".limits." + (turns ? "angle" : "displacement"), turns ? "rad" : "m");
+  const MotorWords words = words_of(own);
+  check_span(own.force, path + ".limits." + words.force, words.force_unit);
+  check_span(own.position, path + ".limits." + words.position, words.position_unit);
   own.speed = limits.speed.value_or(INFINITY);
   own.force_rate = limits.force_rate.value_or(INFINITY);
   for (const double rate : {own.speed, own.force_rate}) {

@@ -121,6 +121,12 @@ Vec3 velocity(const ContactSide& side, const std::array<double, 3>& weights, con
   return Vec3::Zero();
 }
 
+/// A contact takes part from now on, if it does not yet.
+void play(ContactRoom& room, int contact) {
+  const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), contact);
+  if (place == room.playing.end() || *place != contact) room.playing.insert(place, contact);
+}
+
 /// A contact as it is at the start of the step.
 struct Beginning {
   double gap = 0.0;       ///< [m]
@@ -230,8 +236,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     std::sort(near.begin(), near.end());
     if (near.size() > kSoughtContacts) near.resize(kSoughtContacts);
     for (const auto& [gap, number] : near) {
-      const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), number);
-      if (place == room.playing.end() || *place != number) room.playing.insert(place, number);
+      play(room, number);
     }
   }
 }
@@ -309,9 +314,7 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     const Vec3 slip = (touch.point_a - was(own.a, touch.nearest.a, touch.point_a, start, now)) -
                       (touch.point_b - was(own.b, touch.nearest.b, touch.point_b, start, now));
     touch.u = Vec3(touch.nearest.gap, slip.dot(touch.frame.col(1)), slip.dot(touch.frame.col(2)));
-    const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), static_cast<int>(i));
-    const bool plays = place != room.playing.end() && *place == static_cast<int>(i);
-    if (!plays && touch.u[0] < room.least[i]) room.playing.insert(place, static_cast<int>(i));
+    if (touch.u[0] < room.least[i]) play(room, static_cast<int>(i));
   }
 }
 

@@ -42,8 +42,7 @@ int effector_size(const Model& model) {
 
 Eigen::VectorXd effector_value(const Model& model, const State& state, const EffectorModel& effector) {
   const OutputModel& output = output_of(model, effector);
-  if (output.quantity == Quantity::orientation)
-    return lie::log(output_axes(model, state, output) * output.upright.transpose());
+  if (output.quantity == Quantity::orientation) return output_turn(model, state, output);
   if (output.quantity == Quantity::strain)
     return Eigen::VectorXd::Constant(
         1, rod::strain(model.rods[output.rod].rod, state.rods[output.rod].q, output.abscissa)[effector.strain]);
@@ -203,17 +202,13 @@ void EffectorRows::force_on(const Model& model, int component, std::vector<Eigen
   for (const Own& own : own_) {
     const Eigen::Index row = component - own.first;
     if (row < 0 || row >= own.over_z.rows()) continue;
-    for (Eigen::Index j = 0; j < own.over_points.cols(); ++j) {
-      const auto point = static_cast<std::size_t>(own.watched + j / 3);
-      const WatchedPoint& watched = model.watched[point];
-      const solid::Body& body = model.solids[watched.solid].body;
-      const solid::Cell& cell = body.cells[watched.where.element];
-      for (std::size_t k = 0; k < cell.nodes().size(); ++k) {
-        const int unknown = body.unknown(j % 3, cell.nodes()[k]);
-        if (unknown >= 0)
-          solids[watched.solid][unknown] +=
-              own.over_points(row, j) * watched.where.weights[static_cast<Eigen::Index>(k)];
-      }
+    if (own.watched >= 0) {
+      const int number = model.watched[own.watched].solid;
+      const SolidModel& solid = model.solids[number];
+      const auto place = std::find(solid.watched.begin(), solid.watched.end(), own.watched) - solid.watched.begin();
+      const auto first = static_cast<Eigen::Index>(3 * (solid.rows.size() + static_cast<std::size_t>(place)));
+      solids[number] +=
+          solid.border.middleRows(first, own.over_points.cols()).transpose() * own.over_points.row(row).transpose();
     }
     if (own.over_z.cols() > 0) side.r.segment(own.unknown, own.over_z.cols()) -= own.over_z.row(row).transpose();
     if (own.over_strains.cols() > 0) side.chains[own.rod] -= own.over_strains.row(row).transpose();

@@ -112,7 +112,6 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
   L_.setZero(error_.size(), rows);
   F_pressed_.setZero(n, rows);
   X_pressed_.setZero(n, rows);
-  S_.resize(rows, n);
   problem_.held.resize(rows);
   if (rows == 0) return;
   problem_.contacts = here.contact_forces().problem();
@@ -123,7 +122,11 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
     rows_.pressed(here, forces_, problem_.contacts.D.col(k), response, L_.col(k));
     tell_motors(response, F_pressed_.col(k), X_pressed_.col(k));
   }
-  S_ = steering_.reaction(problem_);
+}
+
+void Inverse::follow_contacts() {
+  S_.resize(problem_.held.size(), J_.cols());
+  if (S_.rows() > 0) S_ = steering_.reaction(problem_);
 }
 
 Eigen::MatrixXd Inverse::compliance(const Model& model, Linearization& here) {
@@ -227,11 +230,6 @@ void Inverse::steer(const StepContext& context, const State& iterate, Linearizat
   here.change_contacts(moved_, steering_.lambda(), increment);
 }
 
-double Inverse::first_command(const Model& model, const State& start, int actuator) {
-  const ActuatorModel& own = model.actuators[actuator];
-  return own.row < 0 ? start.actuators[actuator] : motor_position(model, start, own);
-}
-
 bool Inverse::settled(const Command& command, const Model& model) const {
   double change = 0.0, size = 0.0;
   for (std::size_t a = 0; a < model.sought.size(); ++a) {
@@ -247,7 +245,7 @@ void Inverse::take(double fraction, const Model& model, Command& command) const 
   for (std::size_t a = 0; a < model.sought.size(); ++a) {
     const ActuatorModel& own = model.actuators[model.sought[a]];
     double& told = command.actuators[model.sought[a]];
-    const Span& span = own.row < 0 ? own.force : own.position;
+    const Span& span = told_span(own);
     const double wanted = told + fraction * steering_.p()[static_cast<Eigen::Index>(a)];
     // (Not beyond the limit by rounding; what is outside may come back.)
     told = wanted > told ? std::min(wanted, std::max(told, span.most)) : std::max(wanted, std::min(told, span.least));
@@ -273,20 +271,15 @@ Aim Inverse::aim(const Model& model, const State& state) {
   return aim;
 }
 
-std::string command_name(const ActuatorModel& actuator) {
-  const bool force = actuator.row < 0;
-  return actuator.name + (actuator.turns() ? (force ? ".torque" : ".angle") : (force ? ".force" : ".displacement"));
-}
-
 std::string describe(const Model& model, const Bound& bound) {
   const ActuatorModel& own = model.actuators[bound.actuator];
-  const bool turns = own.turns();
-  const std::string force = turns ? "torque" : "force", place = turns ? "angle" : "displacement";
-  const std::string newton = turns ? " N m" : " N", metre = turns ? " rad" : " m";
+  const MotorWords words = words_of(own);
+  const std::string force = words.force, place = words.position;
+  const std::string newton = words.force_unit, metre = words.position_unit;
   const auto say = [&](const std::string& what, double value, const std::string& unit) {
     char number[32];
     std::snprintf(number, sizeof number, "%.6g", value);
-    return "actuators." + own.name + ": " + what + " " + number + unit;
+    return "actuators." + own.name + ": " + what + " " + number + " " + unit;
   };
   switch (bound.limit) {
     case Limit::least_force:
@@ -336,8 +329,7 @@ StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& go
   Memory& memory = workspace.memory();
   memory.inverse.begin(model, state, goal, h);
   memory.command = command;
-  for (const int actuator : model.sought)
-    memory.command.actuators[actuator] = memory.inverse.first_command(model, state, actuator);
+  for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
   NewtonRules rules = step_rules(model, evaluation);
   rules.inverse = &memory.inverse;
   StepReport report = step_by(rules, memory, memory.command, h, state);
@@ -351,7 +343,16 @@ constexpr int kMostTurns = 60;
 /// First region of trust, as a part of the scene's size.
 constexpr double kFirstReach = 0.2;
 
-/// Linearises about an equilibrium that a step from `start` has come to; false where a matrix is singular.
+/// Solves the linear problem at Memory::iterate in Memory::context; false where a matrix is singular.
+bool solve_there(Memory& memory, solid::Tangent tangent, StageTimes& times, const Linearization::Steer& steer) {
+  memory.here.evaluate(memory.context, memory.iterate.state, times);
+  std::string failed;
+  if (!memory.here.finite() || !memory.here.factor(tangent, Linearization::Wanted::any, failed)) return false;
+  memory.here.solve(memory.increment, steer);
+  return memory.increment.reduced.ok;
+}
+
+/// About an equilibrium that a step from `start` has come to.
 bool linearize_at(Memory& memory, const State& start, const State& state, const Command& command, double time,
                   StageTimes& times, const Linearization::Steer& steer) {
   StepContext& context = memory.context;
@@ -360,29 +361,15 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   for (solid::StepStart& own : context.solids) own.rate = 0.0;
   memory.iterate.state = state;
   find_contacts(context, memory.iterate.state, memory.here.contacts());
-  memory.here.evaluate(context, memory.iterate.state, times);
-  std::string failed;
-  if (!memory.here.finite() || !memory.here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed))
-    return false;
-  memory.here.solve(memory.increment, steer);
-  return memory.increment.reduced.ok;
+  return solve_there(memory, solid::Tangent::exact, times, steer);
 }
 
-/// Linearises the first round of a step of h, as the paper's.
+/// The first round of a step of h, as the paper's.
 bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
                     const Linearization::Steer& steer) {
-  StepContext& context = memory.context;
-  context.set(start, command, h);
-  first_guess(context, memory.iterate.state);
-  follow_points(context, memory.iterate.state, memory.room);
-  find_contacts(context, memory.iterate.state, memory.here.contacts());
-  place_held(context, memory.iterate.state);
-  memory.here.evaluate(context, memory.iterate.state, times);
-  std::string failed;
-  if (!memory.here.finite() || !memory.here.factor(solid::Tangent::definite, Linearization::Wanted::any, failed))
-    return false;
-  memory.here.solve(memory.increment, steer);
-  return memory.increment.reduced.ok;
+  begin_step(memory, start, command, h);
+  place_held(memory.context, memory.iterate.state);
+  return solve_there(memory, solid::Tangent::definite, times, steer);
 }
 
 double merit_of(const Model& model, const State& state, const Goal& goal) {
@@ -403,7 +390,7 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   Inverse& inverse = memory.inverse;
   inverse.begin(model, state, goal, time - state.time);
   Command told = command;
-  for (const int actuator : model.sought) told.actuators[actuator] = inverse.first_command(model, state, actuator);
+  for (const int actuator : model.sought) told.actuators[actuator] = told_to(model, state, actuator);
   StepResult at = equilibrium_step(model, workspace, told, state, time);
   if (!accepted(at.report.status)) return at.report;
   // Where friction remembers the way, every trial goes the whole of it.
@@ -475,6 +462,7 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
   Eigen::MatrixXd compliance;
   const auto look = [&](Increment& increment) {
     inverse.look(memory.context, memory.iterate.state, memory.here, increment);
+    inverse.follow_contacts();
     compliance = inverse.compliance(model, memory.here);
   };
   const bool ok = of == JacobianOf::equilibrium ? linearize_at(memory, state, state, command, state.time, times, look)
@@ -494,8 +482,8 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
   }
   for (const int actuator : model.sought) {
     const ActuatorModel& own = model.actuators[actuator];
-    result.columns.push_back(command_name(own) +
-                             (own.row < 0 ? (own.turns() ? " [N m]" : " [N]") : (own.turns() ? " [rad]" : " [m]")));
+    const MotorWords words = words_of(own);
+    result.columns.push_back(command_name(own) + " [" + (own.row < 0 ? words.force_unit : words.position_unit) + "]");
   }
   return result;
 }

@@ -12,9 +12,6 @@ namespace sinew {
 /// "actuators.pull: force at most 10 N"
 std::string describe(const Model& model, const Bound& bound);
 
-/// "pull.force": what an actuator is told, as signals call it.
-std::string command_name(const ActuatorModel& actuator);
-
 /// "reached", or what keeps the effectors from their goals; empty without targets.
 std::string describe(const Model& model, const Aim& aim);
 
@@ -29,8 +26,6 @@ class Inverse {
   void steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment);
   /// A part of them becomes the command.
   void take(double fraction, const Model& model, Command& command) const;
-  /// What a sought actuator is told before anything is known: what it does at the start.
-  static double first_command(const Model& model, const State& start, int actuator);
   /// No increment would change a command, or what it does to the effectors, by anything to speak of.
   bool settled(const Command& command, const Model& model) const;
   /// How far the linearisation's increments would move the effectors, weighed.
@@ -47,7 +42,9 @@ class Inverse {
   void look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment);
   /// How effectors give way to forces on them, contacts going on as they are. What was pushed no longer stands then.
   Eigen::MatrixXd compliance(const Model& model, Linearization& here);
-  /// Those of effectors, of the motors' forces and of their places, contacts going on as they are.
+  /// How forces at contacts follow the commands, for what is asked next.
+  void follow_contacts();
+  /// Responses of effectors, of the motors' forces and of their places, contacts going on as they are.
   Eigen::MatrixXd jacobian() const { return J_ + L_ * S_; }
   Eigen::MatrixXd force_change() const { return F_ + F_pressed_ * S_; }
   Eigen::MatrixXd position_change() const { return X_ + X_pressed_ * S_; }

@@ -177,17 +177,20 @@ void Linearization::solve(const Linearization& right, Increment& increment, cons
   follow(pushes_, side_, increment, steer);
 }
 
-void Linearization::couple(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side,
-                           solve::CoupledSolution& solution) {
+void Linearization::push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side) {
   const Model& model = context_->model;
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
+}
+
+void Linearization::couple(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side,
+                           solve::CoupledSolution& solution) {
+  push(solids, side);
   factor_.solve(side, solution);
 }
 
 void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment) {
   const Clock clock(times_->solve);
-  const Model& model = context_->model;
-  for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, solids[i], side.c);
+  push(solids, side);
   follow(solids, side, increment, {});
 }
 
@@ -234,7 +237,7 @@ void Linearization::refine(const std::vector<Eigen::VectorXd>& solids, Increment
       left = relative <= left || std::isnan(left) ? left : relative;  // NaN stays
     }
     if (left < kAimed || !(left < 0.5 * before) || turn == kMost) break;
-    for (std::size_t i = 0; i < free_.size(); ++i) free_[i].push(model.solids[i], model, left_[i], rest_.c);
+    push(left_, rest_);
     factor_.solve(rest_, part_.reduced);
     if (!part_.reduced.ok) break;
     for (std::size_t i = 0; i < free_.size(); ++i) {

@@ -103,6 +103,7 @@ class Linearization {
   void factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times);
   bool solids_factored(std::string& failed);
   void factor_border();
+  void push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side);
   /// What comes after volumes have been pushed.
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
               const Steer& steer);

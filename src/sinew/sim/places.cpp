@@ -55,4 +55,24 @@ std::vector<double> motor_positions(const Model& model, const State& state) {
   return positions;
 }
 
+Vec3 output_turn(const Model& model, const State& state, const OutputModel& output) {
+  return lie::log(output_axes(model, state, output) * output.upright.transpose());
+}
+
+double told_to(const Model& model, const State& state, int actuator) {
+  const ActuatorModel& own = model.actuators[actuator];
+  return own.row < 0 ? state.actuators[actuator] : motor_position(model, state, own);
+}
+
+const Span& told_span(const ActuatorModel& actuator) { return actuator.row < 0 ? actuator.force : actuator.position; }
+
+MotorWords words_of(const ActuatorModel& actuator) {
+  return actuator.turns() ? MotorWords{"torque", "angle", "N m", "rad"} : MotorWords{"force", "displacement", "N", "m"};
+}
+
+std::string command_name(const ActuatorModel& actuator) {
+  const MotorWords words = words_of(actuator);
+  return actuator.name + "." + (actuator.row < 0 ? words.force : words.position);
+}
+
 }  // namespace sinew

@@ -1,6 +1,9 @@
 // Where things are in a state: the one home of what steps, runs and signals ask alike.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/state.hpp"
 
@@ -22,11 +25,28 @@ Vec3 solid_point(const Model& model, const State& state, int solid, const solid:
 /// How a point of an output is turned: the cross-section of a rod, a rigid body, or the rotation of F on a solid.
 rod::Mat3 output_axes(const Model& model, const State& state, const OutputModel& output);
 
+/// How it has turned since the start, as a rotation vector [rad] in the axes of the world.
+Vec3 output_turn(const Model& model, const State& state, const OutputModel& output);
+
 /// How many cells of solids are flat or inside out.
 int count_folded(const Model& model, const State& state);
 
 /// How far a motor has moved its base, or drawn its tendon [m] or [rad]; and all of them.
 double motor_position(const Model& model, const State& state, const ActuatorModel& actuator);
 std::vector<double> motor_positions(const Model& model, const State& state);
+
+/// What a motor obeys: its force where that is told, else where it is.
+double told_to(const Model& model, const State& state, int actuator);
+/// What it can do of that.
+const Span& told_span(const ActuatorModel& actuator);
+
+/// How people speak of what a motor does: "pull" has `force` [N] and `displacement` [m], what turns a torque and an
+/// angle.
+struct MotorWords {
+  const char *force, *position, *force_unit, *position_unit;
+};
+MotorWords words_of(const ActuatorModel& actuator);
+/// "pull.force": what it is told, as signals call it.
+std::string command_name(const ActuatorModel& actuator);
 
 }  // namespace sinew

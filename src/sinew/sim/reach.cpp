@@ -18,8 +18,6 @@ double mirrored(int number, int base) {
   return value;
 }
 
-const Span& told_span(const ActuatorModel& actuator) { return actuator.row < 0 ? actuator.force : actuator.position; }
-
 bool keeps(const Span& span, double value) {
   const double room = 1e-9 * std::max(std::abs(value), 1e-9);
   return value >= span.least - room && value <= span.most + room;
@@ -58,8 +56,8 @@ std::vector<std::vector<double>> spread_commands(const Model& model, int count) 
   for (const int sought : model.sought) {
     const ActuatorModel& own = model.actuators[sought];
     spans.push_back(told_span(own));
-    const char* const what =
-        own.turns() ? (own.row < 0 ? "torque" : "angle") : (own.row < 0 ? "force" : "displacement");
+    const MotorWords words = words_of(own);
+    const char* const what = own.row < 0 ? words.force : words.position;
     if (!std::isfinite(spans.back().least) || !std::isfinite(spans.back().most))
       throw InputError(
           {"", 0, "actuators." + own.name + ".limits", "", std::string("say nothing of its least or most ") + what,
@@ -101,7 +99,7 @@ void sample_reach(const Model& model, const std::vector<std::vector<double>>& co
   };
   const Command told = command_at(model, 0.0);
   Command first = told;
-  for (const int sought : model.sought) first.actuators[sought] = command_of(model, start).actuators[sought];
+  for (const int sought : model.sought) first.actuators[sought] = told_to(model, start, sought);
   std::vector<Known> known;
   State rest = start;
   if (accepted(go(model, workspace, first, rest).status)) {

@@ -48,9 +48,8 @@ SignalGroup position_group(const OutputModel& output) {
 }
 
 SignalGroup orientation_group(const OutputModel& output) {
-  return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
-            return numbers(Vec3(lie::log(output_axes(model, state, output) * output.upright.transpose())));
-          }};
+  return {named(output.name, {"x", "y", "z"}),
+          [=](const Model& model, const State& state) { return numbers(output_turn(model, state, output)); }};
 }
 
 // Without a default, so that the compiler asks where a new quantity belongs.
@@ -120,16 +119,15 @@ SignalGroup pair_group(const OutputModel& output) {
   return {named(output.name, {"x", "y", "z", "normal", "contacts", "sliding", "gap"}),
           [=](const Model& model, const State& state) {
             Vec3 sum = Vec3::Zero();
-            double normal = 0.0, contacts = 0.0, sliding = 0.0, gap = INFINITY;
+            double contacts = 0.0, sliding = 0.0;
             for (const ContactState& own : state.contacts) {
               if (own.pair != pair) continue;
               sum += sign * force_on_second(own);
-              gap = std::min(gap, own.gap);
               if (own.force.isZero()) continue;  // only watched
-              normal += own.force.dot(own.normal);
               contacts += 1.0;
               sliding += slides(model, own) ? 1.0 : 0.0;
             }
+            const auto [normal, gap] = pressing_of(state, pair);
             return std::vector<double>{
                 sum.x(), sum.y(), sum.z(), normal, contacts, sliding, std::isfinite(gap) ? gap : 0.0};
           }};
@@ -174,9 +172,9 @@ SignalGroup output_group(const OutputModel& output) {
 SignalGroup motor_group(const Model& all) {
   SignalGroup group;
   for (const ActuatorModel& actuator : all.actuators) {
-    const bool turns = actuator.motion == Motion::rotation;
-    group.names.push_back(actuator.name + (turns ? ".angle" : ".displacement"));
-    group.names.push_back(actuator.name + (turns ? ".torque" : ".force"));
+    const MotorWords words = words_of(actuator);
+    group.names.push_back(actuator.name + "." + words.position);
+    group.names.push_back(actuator.name + "." + words.force);
   }
   group.values = [](const Model& model, const State& state) {
     std::vector<double> values;

@@ -30,9 +30,8 @@ Command command_at(const Model& model, double time) {
 
 Command command_of(const Model& model, const State& state) {
   Command command{state.actuators, state.loads};
-  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
-    if (model.actuators[i].row >= 0) command.actuators[i] = motor_position(model, state, model.actuators[i]);
-  }
+  for (std::size_t i = 0; i < model.actuators.size(); ++i)
+    command.actuators[i] = told_to(model, state, static_cast<int>(i));
   return command;
 }
 
@@ -50,7 +49,7 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state) {
+double begin_step(Memory& memory, const State& state, const Command& command, double h) {
   memory.context.set(state, command, h);
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
@@ -61,6 +60,12 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
     const Clock clock(spent);
     find_contacts(memory.context, iterate.state, memory.here.contacts());
   }
+  return spent;
+}
+
+StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state) {
+  Iterate& iterate = memory.iterate;
+  const double spent = begin_step(memory, state, command, h);
   // What is prescribed stands in the context already.
   StepReport report = newton([](double, StepContext&) {}, memory, rules, iterate);
   report.times.contact += spent;

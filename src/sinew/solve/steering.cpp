@@ -409,7 +409,8 @@ bool Steering::solve(const SteeringProblem& problem) {
   if (!descend(problem, here_)) return false;
   const auto try_from_there = [&] {
     const Eigen::VectorXd before = penalty_;
-    if (there_.p == here_.p || !descend(problem, there_)) return;
+    // (From where it started, and from its end, it has been looked.)
+    if (there_.p == here_.p || there_.p == start.p || !descend(problem, there_)) return;
     penalty_ = penalty_.cwiseMax(before);
     if (cost(there_) < cost(here_) * (1.0 - 1e-9)) std::swap(here_, there_);
   };
