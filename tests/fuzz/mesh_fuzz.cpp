@@ -1,9 +1,4 @@
-// libFuzzer target for the mesh readers: whatever the bytes, a mesh or an InputError. Not part of the normal build:
-//
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -Isrc -I/usr/include/eigen3
-//     tests/fuzz/mesh_fuzz.cpp src/sinew/io/{byte_cursor,mesh_*,vtk_*,vtu_*}.cpp src/sinew/solid/{element,mesh*}.cpp
-//     src/sinew/contact/{mesh,tree}.cpp src/sinew/error/*.cpp -lfmt -lpugixml -lz -o mesh_fuzz
-//   ./mesh_fuzz -rss_limit_mb=512 corpus/        (start the corpus from small files of every format)
+// libFuzzer target for the mesh readers: whatever the bytes, a mesh or an InputError. scripts/fuzz runs it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,4 @@
-// Fuzz target of the recording reader (libFuzzer). Build and run by hand:
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -Isrc \
-//     tests/fuzz/recording_fuzz.cpp src/sinew/io/{recording,append_file}.cpp src/sinew/error/input_error.cpp \
-//     -lfmt -lxxhash -o recording_fuzz && ./recording_fuzz -max_len=4096
+// libFuzzer target of the recording reader. scripts/fuzz runs it.
 #include <xxhash.h>
 
 #include <cstdint>

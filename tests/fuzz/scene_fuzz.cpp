@@ -1,8 +1,5 @@
 // libFuzzer target: whatever the bytes, parse_scene returns a scene that can be written and read again, or throws
-// InputError with a rule. Needs clang:
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Isrc -I/usr/include/eigen3 tests/fuzz/scene_fuzz.cpp
-//     src/sinew/error/input_error.cpp src/sinew/io/{units,nearest,document*,field*,scene_*,samples,csv_table}.cpp
-//     -lyaml-cpp -lfmt -lmuparser
+// InputError with a rule. scripts/fuzz runs it.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -1,8 +1,5 @@
 // libFuzzer target: whatever the bytes, read_csv gives as many finite numbers for each column, or throws InputError
-// with a rule. Needs clang:
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -Isrc
-//     -I/usr/include/eigen3 tests/fuzz/table_fuzz.cpp src/sinew/error/input_error.cpp
-//     src/sinew/io/{csv_table,nearest,document*}.cpp -lyaml-cpp -lfmt
+// with a rule. scripts/fuzz runs it.
 #include <unistd.h>
 
 #include <cmath>
