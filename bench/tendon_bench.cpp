@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
-#include "sinew/sim/signals.hpp"
 
 namespace {
 

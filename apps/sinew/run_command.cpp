@@ -73,6 +73,7 @@ std::vector<std::string> warnings_of(const Model& model, const State& state) {
 
 /// How near targets were come to.
 void print_targets(const Model& model, const State& state, const io::Recording& recording) {
+  if (recording.steps.size() < 2) return;
   std::size_t reached = 0;
   for (const io::RecordedStep& step : recording.steps) reached += step.targets.starts_with("reached") ? 1 : 0;
   fmt::print("Targets reached in {} of {} steps; at the end {}\n", reached, recording.steps.size() - 1,
@@ -81,8 +82,20 @@ void print_targets(const Model& model, const State& state, const io::Recording& 
   effector_errors(model, state, goal_at(model, state.time), errors);
   for (const EffectorModel& own : model.effectors) {
     const Measure measure = measure_of(model, own);
-    fmt::print("  {}: {:.3g} {} off\n", model.outputs[own.output].name, error_of(own, errors) / measure.unit,
-               measure.name);
+    const std::string& name = model.outputs[own.output].name;
+    fmt::print("  {}: {:.3g} {} off", name, error_of(own, errors) / measure.shown, measure.name);
+    const std::vector<std::string>& columns = recording.header.signal_names;
+    const auto column = std::find(columns.begin(), columns.end(), name + ".error");
+    if (column != columns.end()) {
+      const auto error = [&](const io::RecordedStep& step) {
+        return step.signals[static_cast<std::size_t>(column - columns.begin())];
+      };
+      const auto worst = std::max_element(recording.steps.begin() + 1, recording.steps.end(),
+                                          [&](const auto& a, const auto& b) { return error(a) < error(b); });
+      fmt::print("; at most {:.3g} {}, at t = {:.4g} s: {}", error(*worst) / measure.shown, measure.name, worst->time,
+                 worst->targets);
+    }
+    fmt::print("\n");
   }
 }
 
@@ -173,7 +186,15 @@ int run_and_record(const LoadedScene& loaded, const State& start, const std::fil
 /// Changes of a scene that let a table of commands drive it.
 void add_commands(const std::filesystem::path& table, const io::SceneFile& file, std::vector<std::string>& overrides) {
   const std::string path = std::filesystem::absolute(table).lexically_normal().string();
-  for (const std::string& column : io::csv_columns(table)) {
+  const std::vector<std::string> columns = io::csv_columns(table);
+  for (const auto& [name, actuator] : file.scene.actuators) {
+    const auto of_it = [&, prefix = name + "."](const std::string& column) { return column.starts_with(prefix); };
+    if (std::holds_alternative<Sought>(actuator.drive) && std::none_of(columns.begin(), columns.end(), of_it))
+      throw InputError({table.string(), 1, "", "",
+                        "has no column for actuators." + name + ", which the scene leaves open",
+                        "add a column such as " + name + ".force"});
+  }
+  for (const std::string& column : columns) {
     if (column == "time") continue;
     const std::size_t dot = column.rfind('.');
     const std::string name = column.substr(0, dot), kind = dot == std::string::npos ? "" : column.substr(dot + 1);

@@ -85,7 +85,7 @@ int map_workspace(const WorkspaceOptions& options) {
     throw InputError({options.output.string(), 0, "", "", "the folder cannot be made: " + failed.message(),
                       "give another one with -o"});
   const auto shown = std::find_if(model.effectors.begin(), model.effectors.end(), [&](const EffectorModel& own) {
-    return model.outputs[own.output].quantity == Quantity::position && model.outputs[own.output].pair < 0;
+    return model.outputs[own.output].quantity == Quantity::position;
   });
   Progress progress("sinew workspace " + options.scene.filename().string(), static_cast<double>(commands.size()),
                     options.quiet);

@@ -347,7 +347,9 @@ const std::vector<Broken> table = {
      scene("outputs:\n", "loads: {weight: {rod: cable, force: [0, 0, 1 N/m]}}\noutputs:\n"), "scene.yaml", 23, "1 N/m",
      "must be a force, but 'N/m' is a unit of a line load", "mN, N, kN"},
     {"ForceInASolid", scene("point: [95 mm, 0 mm, 0 mm]", "point: [95 mm, 0 mm, 0 mm], quantity: force"), "scene.yaml",
-     24, "outputs.tip.quantity", "is known of rods only", "reaction"},
+     24, "outputs.tip.quantity", "is not known of solids", "`reaction`"},
+    {"QuantityOfAPair", scene("outputs:\n", "outputs:\n  both: {between: [finger, cable], quantity: orientation}\n"),
+     "scene.yaml", 24, "outputs.both.quantity", "", "remove"},
     {"OutputFarFromTheBody", scene("point: [95 mm, 0 mm, 0 mm]", "point: [95, 0, 0]"), "scene.yaml", 24, "[95, 0, 0] m",
      "outside solids.finger, beyond the reach of", "raise `reach`"},
     // The command line.

@@ -178,7 +178,7 @@ const std::vector<Broken> cases = {
      "must be a force, but 'N m' is a unit of a torque", "N"},
     {"follower: true", "follower: yes", 87, "loads.screw.follower", "yes", "must be true or false", "follower: true"},
     {"factor: external", "factor: extrenal", 87, "loads.screw.factor", "extrenal",
-     "must be a number, a table over time or `external`", "factor:"},
+     "must be a number, {times, values}, {formula}, {file, column}, or `external`", "`external`?"},
     {"factor: -2.5", "factor: 2 N", 88, "loads.push.factor", "2 N", "must be a number, but 'N' is a unit", "plain"},
     {"  push: {rod: tube, force: [1, 0, 0], follower: false, factor: -2.5}", "  push: 3", 88, "loads.push", "3",
      "must be a map with the keys rod, at, from", "`loads` is forces and moments on rods, by name"},

@@ -108,7 +108,7 @@ const std::vector<Broken> cases = {
     {", angle: 90 deg", "", 50, "actuators.twist.force", "", "exactly one of force, displacement, torque, angle",
      "3 N"},
     {"force: external", "force: extern", 51, "actuators.motor.force", "extern",
-     "must be a force, a table over time or `external`", "external"},
+     "must be a force, {times, values}, {formula}, {file, column}, `inverse` or `external`", "`external`?"},
     {"rotate: [[0, 0, 0], [0, 0, 0.5]]", "rotate: [[0, 0, 0]]", 10, "frames.hand.motion.rotate", "",
      "must have one entry per time, 2, not 1", "one entry for each"},
     {", rotate: [[0, 0, 0], [0, 0, 0.5]], translate: [[0, 0, 0], [0, 20 mm, 0]]", "", 10,

@@ -182,6 +182,48 @@ TEST_F(Inverse, KeepsRates) {
   }
 }
 
+/// Limits of a force and of its rate that just meet, and a posture at rest that the limits do not allow: both are kept,
+/// and nothing is dropped that need not be.
+TEST_F(Inverse, KeepsPretensionAtRestAndWhereRatesJustMeetIt) {
+  for (const Analysis analysis : {Analysis::dynamic, Analysis::quasi_static}) {
+    for (const double rate : {kNone, 2.5, 5.0, 10.0, 12.5, 25.0}) {
+      Scene scene = two_cables();
+      scene.analysis = analysis;
+      for (auto& [name, actuator] : scene.actuators) {
+        actuator.limits.force = Span{0.5, 10.0};
+        if (std::isfinite(rate)) actuator.limits.force_rate = rate;
+      }
+      Robot robot(scene);
+      const Vec3 goal = robot.tip();
+      for (int i = 1; i <= 12; ++i) {
+        const StepReport report = analysis == Analysis::dynamic ? robot.seek(goal) : robot.settle(goal);
+        ASSERT_TRUE(accepted(report.status)) << rate << " " << i << " " << report.detail;
+        const double come = std::isfinite(rate) ? rate * 0.02 * i : kNone;
+        for (const double force : robot.state.actuators)
+          EXPECT_NEAR(force, std::max(std::min(0.5, come), force), 1e-8) << rate << " " << i;
+        EXPECT_EQ(report.aim.dropped.size(), come < 0.5 - 1e-9 ? 2 : 0) << rate << " " << i;
+      }
+    }
+  }
+}
+
+/// Who says only the most does not let a cable push.
+TEST_F(Inverse, CablesDoNotPushWhereOnlyTheMostIsGiven) {
+  for (const Analysis analysis : {Analysis::dynamic, Analysis::quasi_static}) {
+    Scene scene = two_cables();
+    scene.analysis = analysis;
+    for (auto& [name, actuator] : scene.actuators) actuator.limits.force = Span{-kNone, 2.0};
+    Robot robot(scene);
+    for (const double side : {-5.0, 5.0}) {
+      const Vec3 goal = robot.tip() + side * mm * Vec3::UnitY();
+      const StepReport report = analysis == Analysis::dynamic ? robot.seek(goal) : robot.settle(goal);
+      ASSERT_TRUE(accepted(report.status));
+      EXPECT_NE(report.aim.outcome, Outcome::reached);
+      for (const double force : robot.state.actuators) EXPECT_GE(force, -1e-9);
+    }
+  }
+}
+
 /// A pretension that the rate does not allow at once comes as fast as the rate does, and is told as dropped till then.
 TEST_F(Inverse, DropsWhatOtherLimitsExclude) {
   Scene scene = two_cables();

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
 #include "support/meshes.hpp"

@@ -5,6 +5,7 @@
 // `name_of` the name of another object of the file. The scene_*.cpp are written in these words.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -279,28 +280,44 @@ Type<bool> boolean();
 /// The name of an object that the file describes: of a "rod", listed under `rods`.
 Type<std::string> name_of(std::string what);
 
-/// One of a few words. Their order is that of the enumeration.
-Type<int> word(std::vector<std::string> words);
+/// What words of an enumeration mean.
 template <class E>
-Type<E> word_of(std::vector<std::string> words) {
-  const Type<int> type = word(std::move(words));
-  return {[=](const At& at) { return static_cast<E>(type.read(at)); }, type.schema,
-          [=](const E& value) { return type.show(static_cast<int>(value)); }};
+using Words = std::vector<std::pair<std::string, E>>;
+template <class E>
+std::vector<std::string> texts_of(const Words<E>& words) {
+  std::vector<std::string> texts;
+  for (const auto& [text, value] : words) texts.push_back(text);
+  return texts;
+}
+template <class E>
+int number_of(const Words<E>& words, E value) {
+  const auto same = [value](const auto& own) { return own.second == value; };
+  return static_cast<int>(std::find_if(words.begin(), words.end(), same) - words.begin());
+}
+
+/// One of a few words, by its number.
+Type<int> word(std::vector<std::string> words);
+/// One of a few words.
+template <class E>
+Type<E> word_of(Words<E> words) {
+  const Type<int> type = word(texts_of(words));
+  return {[=](const At& at) { return words[static_cast<std::size_t>(type.read(at))].second; }, type.schema,
+          [=](const E& value) { return type.show(number_of(words, value)); }};
 }
 
 /// A list of such words, each at most once; sorted by their order.
 Type<std::vector<int>> distinct_words(std::string what, std::vector<std::string> words, Count count);
 template <class E>
-Type<std::vector<E>> distinct(std::string what, std::vector<std::string> words, Count count) {
-  const Type<std::vector<int>> type = distinct_words(std::move(what), std::move(words), count);
+Type<std::vector<E>> distinct(std::string what, Words<E> words, Count count) {
+  const Type<std::vector<int>> type = distinct_words(std::move(what), texts_of(words), count);
   const auto read = [=](const At& at) {
     std::vector<E> values;
-    for (const int value : type.read(at)) values.push_back(static_cast<E>(value));
+    for (const int number : type.read(at)) values.push_back(words[static_cast<std::size_t>(number)].second);
     return values;
   };
   const auto show = [=](const std::vector<E>& values) {
     std::vector<int> numbers;
-    for (const E value : values) numbers.push_back(static_cast<int>(value));
+    for (const E value : values) numbers.push_back(number_of(words, value));
     return type.show(numbers);
   };
   return {read, type.schema, show};

@@ -64,6 +64,8 @@ Samples from_file(const At& at, std::size_t components) {
   std::vector<std::string> columns = {table.time};
   columns.insert(columns.end(), table.columns.begin(), table.columns.end());
   const std::filesystem::path path = at.use(table.file);
+  if (!std::filesystem::exists(path))
+    at.child("file").refuse("does not exist as " + path.string(), "paths are relative to the folder of the scene");
   auto values = read_csv(path, columns);
   Samples own{std::move(values[0]),
               {std::make_move_iterator(values.begin() + 1), std::make_move_iterator(values.end())}};
@@ -106,7 +108,9 @@ Samples from_formula(const At& at, std::size_t components) {
         values.push_back(parser.Eval());
       }
     } catch (const mu::Parser::exception_type& error) {
-      place.refuse("is not a formula of t: " + error.GetMsg(), "for example `0.01 * sin(2 * pi * t)`");
+      place.refuse("is not a formula of t: " + error.GetMsg(),
+                   "for example `0.01 * sin(2 * pi * t)`; known are + - * / ^, pi, min, max, abs, sign, sqrt, exp, ln, "
+                   "log10, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, and `t < 1 ? a : b`");
     }
     const auto bad = std::find_if_not(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     if (bad != values.end())

@@ -18,7 +18,9 @@ Type<Slide> slide() {
                       "[[10 mm, 0, 2 mm], [90 mm, 0, 2 mm]]"},
                      &Slide::channel, points({1, 10000})),
         field<Slide>({"anchor_tip", optional, "what holds the tip: its position, its pose, or none", "position"},
-                     &Slide::anchor_tip, word_of<AnchorTip>({"none", "position", "pose"})),
+                     &Slide::anchor_tip,
+                     word_of<AnchorTip>(
+                         {{"none", AnchorTip::none}, {"position", AnchorTip::position}, {"pose", AnchorTip::pose}})),
         field<Slide>(
             {"friction", optional, "Coulomb's coefficient between the rod and its channel; 0 if left out", "0.1"},
             &Slide::friction, quantity(Dimension::number, at_least(0.0))),

@@ -44,7 +44,9 @@ Type<Newton> newton() {
                        "the precision of factors of solids: `single` takes half the memory, and less time from some "
                        "100 000 elements on; solutions are refined to double precision all the same",
                        "double"},
-                      &Newton::precision, word_of<linalg::Precision>({"double", "single"}))}});
+                      &Newton::precision,
+                      word_of<linalg::Precision>(
+                          {{"double", linalg::Precision::float64}, {"single", linalg::Precision::float32}}))}});
   const auto read = [=](const At& at) {
     if (at.is(Node::Kind::map)) return full.read(at);
     Newton value;
@@ -98,7 +100,11 @@ const Type<Scene>& scene_type() {
                       "what is computed: the motion (dynamic), equilibria over time (quasi_static) or at the end "
                       "(static), or natural frequencies at the start (modal)",
                       "static"},
-                     &Scene::analysis, word_of<Analysis>({"dynamic", "quasi_static", "static", "modal"})),
+                     &Scene::analysis,
+                     word_of<Analysis>({{"dynamic", Analysis::dynamic},
+                                        {"quasi_static", Analysis::quasi_static},
+                                        {"static", Analysis::statics},
+                                        {"modal", Analysis::modal}})),
         field<Scene>({"modes", optional, "the number of modes of a modal analysis", "6"}, &Scene::modes,
                      whole_number(1, 1000)),
         field<Scene>(

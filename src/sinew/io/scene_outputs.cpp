@@ -1,6 +1,7 @@
 // Outputs: what is recorded of which material point.
 #include "sinew/io/scene_objects.hpp"
 #include "sinew/io/scene_regions.hpp"
+#include "sinew/sim/quantities.hpp"
 
 namespace sinew::io {
 namespace {
@@ -32,6 +33,13 @@ Rule point_unless_reaction() {
   return {check, {{"if", {{"required", {"solid"}}, {"not", reaction}}}, {"then", {{"required", {"point"}}}}}};
 }
 
+std::string known() {
+  return "of a solid " + known_of(Subject::solid) + "; of a rod " + known_of(Subject::rod) + "; of a body " +
+         known_of(Subject::body) +
+         ". An orientation is how it has turned since the start, a reaction the force on what is held in `region`, the "
+         "force on a body that of all that touches it";
+}
+
 }  // namespace
 
 Type<Output> output() {
@@ -55,20 +63,11 @@ Type<Output> output() {
         field<Output>({"rod", optional, "the rod whose point is recorded", "cable"}, &Output::rod, name_of("rod")),
         field<Output>({"at", optional, "the abscissa of the point on the rod [m]", "100 mm"}, &Output::at,
                       quantity(Dimension::length, at_least(0.0))),
-        field<Output>(
-            {"quantity", optional,
-             "what is recorded there: position, orientation (how it has turned since the start), strain or stress; of "
-             "a "
-             "solid also displacement, or the reaction of all "
-             "that is held in a region; of a rod also force or moment; of a body position, orientation, or the "
-             "force of all that touches it",
-             "strain"},
-            &Output::quantity,
-            word_of<Quantity>(
-                {"position", "displacement", "orientation", "strain", "force", "moment", "stress", "reaction"})),
+        field<Output>({"quantity", optional, "what is recorded there: " + known(), "strain"}, &Output::quantity,
+                      word_of<Quantity>(quantity_words())),
         region()},
-       {exactly_one({"solid", "rod", "body", "between"}), needs("point", "solid"), needs("in", "solid"),
-        needs("reach", "solid"), needs("region", "solid"), needs("rod", "at"), needs("at", "rod"),
+       {exactly_one({"solid", "rod", "body", "between"}), excludes("between", {"quantity"}), needs("point", "solid"),
+        needs("in", "solid"), needs("reach", "solid"), needs("region", "solid"), needs("rod", "at"), needs("at", "rod"),
         point_unless_reaction()}});
 }
 

@@ -100,7 +100,7 @@ void set_in(Region& region, In in, const At& at) {
 
 Type<std::array<bool, 3>> axes(Count count) {
   enum class Axis { x, y, z };
-  const Type<std::vector<Axis>> some = distinct<Axis>("axes", {"x", "y", "z"}, count);
+  const Type<std::vector<Axis>> some = distinct<Axis>("axes", {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}, count);
   const auto read = [=](const At& at) {
     std::array<bool, 3> held = {};
     for (const Axis axis : some.read(at)) held[static_cast<std::size_t>(axis)] = true;

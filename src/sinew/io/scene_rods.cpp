@@ -13,7 +13,7 @@ namespace {
 
 using enum Need;
 
-const std::vector<std::string> strain_names = {"torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"};
+const std::vector<std::string> strain_names = texts_of(strain_words());
 
 /// The orders of the six strains.
 struct Orders {
@@ -104,7 +104,7 @@ RestStrains row_by_row(const StrainTable& table) {
 
 Type<std::variant<Rest, RestStrains>> rest() {
   using Value = std::variant<Rest, RestStrains>;
-  const Type<Rest> word = word_of<Rest>({"path", "straight"});
+  const Type<Rest> word = word_of<Rest>({{"path", Rest::path}, {"straight", Rest::straight}});
   std::vector<Field<StrainTable>> fields = {
       field<StrainTable>({"at", optional, "the ascending abscissae of the values below [m]", "[0, 50 mm]"},
                          &StrainTable::at, lengths({1}))};
@@ -139,8 +139,14 @@ Type<std::vector<BaseAxis>> free_motions() {
   using enum BaseAxis;
   const std::vector<BaseAxis> all = {x, y, z, turn_x, turn_y, turn_z};
   const std::vector<std::string> words = {"clamped", "free"};
-  const Type<std::vector<BaseAxis>> some =
-      distinct<BaseAxis>("free motions", {"x", "y", "z", "turn_x", "turn_y", "turn_z"}, {1, 6});
+  const Type<std::vector<BaseAxis>> some = distinct<BaseAxis>("free motions",
+                                                              {{"x", BaseAxis::x},
+                                                               {"y", BaseAxis::y},
+                                                               {"z", BaseAxis::z},
+                                                               {"turn_x", BaseAxis::turn_x},
+                                                               {"turn_y", BaseAxis::turn_y},
+                                                               {"turn_z", BaseAxis::turn_z}},
+                                                              {1, 6});
   const auto read = [=](const At& at) {
     if (at.is(Node::Kind::list)) return some.read(at);
     if (at.is(Node::Kind::scalar) && at.node().text == words[0]) return std::vector<BaseAxis>{};
@@ -201,11 +207,11 @@ Type<Rod> rod() {
         field<Rod>({"frame", optional, "the frame that carries its base", "hand"}, &Rod::frame, name_of("frame")),
         field<Rod>({"cable", optional, "cosserat for a rod with stiffness, geometric for a massless cable without any",
                     "cosserat"},
-                   &Rod::cable, word_of<Cable>({"cosserat", "geometric"})),
+                   &Rod::cable, word_of<Cable>({{"cosserat", Cable::cosserat}, {"geometric", Cable::geometric}})),
         field<Rod>({"sections", optional, "their number, or the ascending ends of all from 0 to the length [m]", "15"},
                    &Rod::sections, count_or_lengths(1, true)),
         field<Rod>({"strains", optional, "the strains that may vary", "[torsion, bending_y, bending_z]"}, &Rod::strains,
-                   distinct<Strain>("strains", strain_names, {1, 6})),
+                   distinct<Strain>("strains", strain_words(), {1, 6})),
         order(),
         field<Rod>({"rest", optional,
                     "the stress-free shape: along the path, straight, or strains, constant or over the abscissae `at`",
@@ -214,7 +220,7 @@ Type<Rod> rod() {
         field<Rod>({"start", optional,
                     "how it lies at the start: bent to its path, or stress-free (rest, the default if `rest` is a map)",
                     "rest"},
-                   &Rod::start, word_of<Start>({"path", "rest"})),
+                   &Rod::start, word_of<Start>({{"path", Start::path}, {"rest", Start::rest}})),
         field<Rod>({"base", optional, "clamped, free, or a list of the free motions of the base", "[x, turn_z]"},
                    &Rod::base, free_motions()),
         field<Rod>({"section", optional, "the shape across", "{circle: {radius: 0.5 mm}}"}, &Rod::section,

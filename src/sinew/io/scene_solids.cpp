@@ -97,7 +97,9 @@ Type<Solid> solid() {
         field<Solid>(
             {"mass_matrix", optional,
              "lumped at the nodes, or consistent; none: consistent with 10-node tetrahedra, else lumped", "lumped"},
-            &Solid::mass_matrix, word_of<solid::MassMatrix>({"lumped", "consistent"})),
+            &Solid::mass_matrix,
+            word_of<solid::MassMatrix>(
+                {{"lumped", solid::MassMatrix::lumped}, {"consistent", solid::MassMatrix::consistent}})),
         field<Solid>({"parts", optional, "regions of another material",
                       "[{group: bone, material: {young: 1 GPa, poisson: 0.3}}]"},
                      &Solid::parts, list<SolidPart>("parts", part(), {1})),

@@ -1,6 +1,7 @@
 // Targets: where outputs are to be brought.
 #include <algorithm>
 
+#include "sinew/io/nearest.hpp"
 #include "sinew/io/scene_objects.hpp"
 #include "sinew/io/scene_values.hpp"
 
@@ -58,8 +59,7 @@ Type<std::vector<Target>> targets() {
       {"a target",
        {where,
         field<Target>({"strain", optional, "which strain of the output, where that is one", "bending_y"},
-                      &Target::strain,
-                      word_of<Strain>({"torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"})),
+                      &Target::strain, word_of<Strain>(strain_words())),
         field<Target>({"weights", optional,
                        "how much each component matters, 0 where it may be anything; all 1 if left out", "[1, 1, 0]"},
                       &Target::weights, weights()),
@@ -71,11 +71,18 @@ Type<std::vector<Target>> targets() {
       const std::string& name = at.node().entries[i].key;
       const At own = at.entry(i);
       const std::vector<std::string> known = at.names_in("outputs");
-      if (std::find(known.begin(), known.end(), name) == known.end())
-        own.refuse("is not the name of an output of this scene",
-                   "describe it under `outputs:`, as in `" + name + ": {solid: finger, point: [100 mm, 0, 0]}`");
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        const std::string near = nearest(name, known);
+        at.refuse_key(name, "is not the name of an output of this scene",
+                      near.empty()
+                          ? "describe it under `outputs:`, as in `" + name + ": {solid: finger, point: [100 mm, 0, 0]}`"
+                          : "did you mean `" + near + "`?");
+      }
       Target value = target.read(own);
       value.output = name;
+      const std::optional<At> output = own.object("outputs", name);
+      if (own.has("strain") && !(output && output->says("quantity", "strain")))
+        own.refuse_key("strain", "is of outputs with `quantity: strain`", "remove it, or record a strain there");
       const Measure measure = measure_of(own, name, value);
       const At goal = own.child(at_key);
       if (goal.is(Node::Kind::scalar) && goal.node().text == "external") {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "sinew/io/nearest.hpp"
 #include "sinew/io/samples.hpp"
+#include "sinew/sim/quantities.hpp"
 
 namespace sinew::io {
 namespace {
@@ -45,7 +47,14 @@ Type<Vec3> direction() {
   return {read, any.schema};
 }
 
-Type<In> in() { return word_of<In>({"object", "world"}); }
+Words<Strain> strain_words() {
+  Words<Strain> words;
+  for (std::size_t c = 0; c < rod::kStrainNames.size(); ++c)
+    words.emplace_back(rod::kStrainNames[c], static_cast<Strain>(c));
+  return words;
+}
+
+Type<In> in() { return word_of<In>({{"object", In::object}, {"world", In::world}}); }
 
 Type<std::filesystem::path> file_name() {
   const Type<std::string> name = text();
@@ -101,7 +110,10 @@ Type<std::vector<double>> lengths(Count count) {
   return list<double>("lengths", quantity(Dimension::length, at_least(0.0)), count, check_ascending);
 }
 
-Type<Drive> drive(Dimension dimension) {
+namespace {
+
+/// Of a motor the command may be `inverse`.
+Type<Drive> drive(Dimension dimension, bool motor) {
   const Type<double> value = quantity(dimension);
   const Type<Table> table = map<Table>(
       {"a table over time",
@@ -118,25 +130,27 @@ Type<Drive> drive(Dimension dimension) {
     if (const std::optional<Samples> own = samples(at, 1)) return Table{own->times, own->values[0]};
     if (at.is(Node::Kind::map)) return table.read(at);
     if (at.is(Node::Kind::scalar) && at.node().text == "external") return External{};
+    if (motor && at.is(Node::Kind::scalar) && at.node().text == "inverse") return Sought{};
     const bool word = at.is(Node::Kind::scalar) && at.node().text.find_first_of("0123456789") == std::string::npos;
     if (word || !at.is(Node::Kind::scalar)) {
-      at.refuse(fmt::format("must be {}, a table over time or `external`", name(dimension)));
+      const std::string words = motor ? "`inverse` or `external`" : "or `external`";
+      const std::string near = at.is(Node::Kind::scalar) ? nearest(at.node().text, {"external", "inverse"}) : "";
+      at.refuse(fmt::format("must be {}, {{times, values}}, {{formula}}, {{file, column}}, {}", name(dimension), words),
+                near.empty() || (!motor && near == "inverse") ? "" : "did you mean `" + near + "`?");
     }
     return Table{{0.0}, {value.read(at)}};
   };
   return {read, [=] {
-            return any_of({value.schema(), Json{{"const", "external"}}, table.schema(), samples_schema(1)});
+            std::vector<Json> any = {value.schema(), Json{{"const", "external"}}, table.schema(), samples_schema(1)};
+            if (motor) any.push_back(Json{{"const", "inverse"}});
+            return any_of(any);
           }};
 }
 
-Type<Drive> motor_drive(Dimension dimension) {
-  const Type<Drive> any = drive(dimension);
-  const auto read = [=](const At& at) -> Drive {
-    if (at.is(Node::Kind::scalar) && at.node().text == "inverse") return Sought{};
-    return any.read(at);
-  };
-  return {read, [=] { return any_of({any.schema(), Json{{"const", "inverse"}}}); }};
-}
+}  // namespace
+
+Type<Drive> drive(Dimension dimension) { return drive(dimension, false); }
+Type<Drive> motor_drive(Dimension dimension) { return drive(dimension, true); }
 
 Type<Span> span(Dimension dimension) {
   const Type<double> value = quantity(dimension);

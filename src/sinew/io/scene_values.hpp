@@ -13,6 +13,7 @@ Type<Vec3> vec3(Dimension dimension);
 Type<Vec3> direction();                       ///< any vector but zero
 Type<std::vector<Vec3>> points(Count count);  ///< [m], no two neighbours the same
 Type<In> in();
+Words<Strain> strain_words();
 Type<Pose> pose();
 Type<std::filesystem::path> file_name();
 /// The `time` of the document.

@@ -38,22 +38,30 @@ Eigen::MatrixXd dense(const Chain& chain) {
   return A;
 }
 
-void multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y) {
+double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y) {
   y.resize(chain.coordinates());
+  double largest = 0.0;
+  const auto see = [&largest](const auto& part) {
+    if (part.size() > 0) largest = std::max(largest, part.template lpNorm<Eigen::Infinity>());
+  };
   Vec6 twist = tau;
   for (int k = 0; k < chain.links(); ++k) {
     const int at = chain.first[k], m = chain.size(k);
     auto own = y.segment(at, m);
     own.noalias() = chain.left_wrenches(k).transpose().lazyProduct(twist);
+    see(own);
     own.noalias() += chain.block(k).lazyProduct(x.segment(at, m));
     twist.noalias() += chain.twists(k).lazyProduct(x.segment(at, m));
   }
   Vec6 wrench = Vec6::Zero();
   for (int k = chain.links() - 1; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
-    y.segment(at, m).noalias() += chain.twists(k).transpose().lazyProduct(wrench);
+    auto own = y.segment(at, m);
+    see(own);
+    own.noalias() += chain.twists(k).transpose().lazyProduct(wrench);
     wrench.noalias() += chain.wrenches(k).lazyProduct(x.segment(at, m));
   }
+  return largest;
 }
 
 Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment) {

@@ -33,12 +33,13 @@ void check_span(const Span& span, const std::string& path, const char* unit) {
 }
 
 /// What a motor can do, and where it is sought that it can do something.
-void set_limits(const Actuator& actuator, const std::string& path, ActuatorModel& own) {
+void set_limits(Model& model, const Actuator& actuator, const std::string& path, ActuatorModel& own) {
   const Limits& limits = actuator.limits;
   const bool turns = own.turns();
   // A cable that would have to push goes slack instead.
   const bool pulls = actuator.tendon || (!turns && !actuator.axis);
   own.force = limits.force.value_or(Span{pulls ? 0.0 : -INFINITY, INFINITY});
+  if (pulls && std::isinf(own.force.least)) own.force.least = 0.0;  // only the most was given
   own.position = limits.displacement;
   const MotorWords words = words_of(own);
   check_span(own.force, path + ".limits." + words.force, words.force_unit);
@@ -50,6 +51,14 @@ void set_limits(const Actuator& actuator, const std::string& path, ActuatorModel
       reject(path + ".limits." + (rate == own.speed ? "speed" : "force_rate"), text(rate), "must be greater than 0",
              "leave it out where nothing limits it");
   }
+  if (actuator.preferred && (*actuator.preferred < own.force.least || *actuator.preferred > own.force.most))
+    reject(path + ".preferred", text(*actuator.preferred) + " " + words.force_unit,
+           "is outside the limits of the " + std::string(words.force), "prefer what the motor can do");
+  const bool limited = limits.force || limits.speed || limits.force_rate || std::isfinite(own.position.least) ||
+                       std::isfinite(own.position.most) || actuator.preferred;
+  if (limited && !std::holds_alternative<Sought>(actuator.drive))
+    model.warnings.push_back(path + ": limits and what is preferred are for motors that are sought (`" + words.force +
+                             ": inverse`); this one does what it is told");
   own.preferred = actuator.preferred.value_or(std::clamp(0.0, own.force.least, own.force.most));
 }
 
@@ -69,7 +78,7 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
            "force and displacement translate, torque and angle rotate");
   }
   check_drive(actuator.drive, path);
-  set_limits(actuator, path, own);
+  set_limits(model, actuator, path, own);
   if (actuator.tendon) {
     if (own.line.rod < 0 || turns)
       reject(path + ".tendon", name, "a tendon pulls inside a Cosserat rod",

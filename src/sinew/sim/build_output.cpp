@@ -1,19 +1,31 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/effectors.hpp"
+#include "sinew/sim/quantities.hpp"
 
 namespace sinew::building {
 
 namespace {
 
-bool of_solids(Quantity quantity) { return quantity == Quantity::displacement || quantity == Quantity::reaction; }
-bool of_rods(Quantity quantity) { return quantity == Quantity::force || quantity == Quantity::moment; }
+std::string word_of(Quantity quantity) {
+  for (const auto& [word, own] : quantity_words()) {
+    if (own == quantity) return word;
+  }
+  return "";
+}
+
+/// What may be asked of this subject.
+void check_known(const Output& output, Subject subject, const char* subjects, const std::string& path) {
+  if (find_kind(output.quantity, subject)) return;
+  reject(path + ".quantity", word_of(output.quantity), std::string("is not known of ") + subjects,
+         "write " + known_of(subject));
+}
 
 void on_solid(Model& model, const Output& output, const std::string& path, OutputModel& own) {
-  if (of_rods(output.quantity))
-    reject(path + ".quantity", "", "is known of rods only", "write `quantity: stress` or `reaction`, or name a rod");
+  check_known(output, Subject::solid, "solids", path);
   own.solid = find(model.scene.solids, *output.solid, path + ".solid", "solid");
   const SolidModel& solid = model.solids[own.solid];
   if (output.quantity == Quantity::reaction) {
@@ -74,15 +86,13 @@ void build_output(Model& model, const std::string& name, const Output& output) {
   if (output.solid) {
     on_solid(model, output, path, own);
   } else if (output.body) {
-    if (output.quantity != Quantity::position && output.quantity != Quantity::orientation &&
-        output.quantity != Quantity::force)
-      reject(path + ".quantity", "", "is not known of rigid bodies", "write `position`, `orientation` or `force`");
+    check_known(output, Subject::body, "rigid bodies", path);
     own.body = find(model.scene.bodies, *output.body, path + ".body", "rigid body");
   } else if (!output.between.empty()) {
+    own.quantity = Quantity::touching;
     of_a_pair(model, output, path, own);
   } else {
-    if (of_solids(output.quantity))
-      reject(path + ".quantity", "", "is known of solids only", "write `position` or `force`, or name a solid");
+    check_known(output, Subject::rod, "rods", path);
     own.rod = find_rod(model, *output.rod, path + ".rod");
     own.abscissa = abscissa_on(model, own.rod, output.at, path + ".at");
   }
@@ -99,18 +109,18 @@ void build_target(Model& model, int number) {
     case Quantity::position:
     case Quantity::orientation:
       break;
+    case Quantity::touching:
+      own.size = 1;
+      model.pairs[output.pair].sought = true;
+      break;
     case Quantity::strain:
       if (output.rod < 0) reject(path, target.output, "is a strain of a solid", "take one of a rod, or a position");
       own.size = 1;
       own.strain = static_cast<int>(target.strain);
       break;
     default:
-      reject(path, target.output, "is nothing that motors can be asked for",
+      reject(path, word_of(output.quantity), "is nothing that motors can be asked for",
              "name an output of `position`, `orientation` or, of a rod, `strain`, or `between` two that touch");
-  }
-  if (output.pair >= 0) {
-    own.size = 1;
-    model.pairs[output.pair].sought = true;
   }
   if (!model.effectors.empty()) own.first = effector_size(model);
   const double unit = measure_of(model, own).unit;
@@ -162,6 +172,25 @@ void check_targets(const Model& model) {
            "write `force: inverse` or `displacement: inverse` for some");
   if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static)
     reject("analysis", "", "targets are met over time", "write `dynamic` or `quasi_static`");
+}
+
+void warn_of_units(Model& model) {
+  for (std::size_t i = 0; i < model.effectors.size(); ++i) {
+    const OutputModel& output = model.outputs[model.effectors[i].output];
+    const Track* const track = std::get_if<Track>(&model.scene.targets[i].at);
+    if (!track) continue;
+    double farthest = 0.0, most = 0.0;  // from where it starts; of a turn
+    for (const Eigen::VectorXd& value : track->values) {
+      farthest = std::max(farthest, (value - model.effectors[i].start).norm());
+      most = std::max(most, value.norm());
+    }
+    const std::string path = "targets." + output.name + ".at";
+    if (output.quantity == Quantity::position && farthest > 10.0 * model.size)
+      model.warnings.push_back(path + ": goes " + text(farthest) + " m from where the output starts, in a scene of " +
+                               text(model.size) + " m: numbers without a unit are metres");
+    if (output.quantity == Quantity::orientation && most > 2.0 * std::numbers::pi)
+      model.warnings.push_back(path + ": turns by " + text(most) + " rad: numbers without a unit are radians");
+  }
 }
 
 }  // namespace sinew::building

@@ -123,6 +123,8 @@ void build_output(Model& model, const std::string& name, const Output& output);
 void build_target(Model& model, int number);
 /// Targets and sought actuators need each other.
 void check_targets(const Model& model);
+/// Of positions without mm and turns in degrees, once everything is known.
+void warn_of_units(Model& model);
 
 /// Ties the axes of a rod's cross-section to the solid that holds it, position left to others.
 void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Vec3& point,

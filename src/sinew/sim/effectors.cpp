@@ -7,7 +7,6 @@
 
 #include "sinew/lie/rotation.hpp"
 #include "sinew/sim/places.hpp"
-#include "sinew/sim/signals.hpp"
 
 namespace sinew {
 
@@ -28,12 +27,23 @@ rod::Mat3 of_turn(const Vec3& f) { return lie::RotationMap::tangent(f).matrix().
 Measure measure_of(const Model& model, const EffectorModel& effector) {
   switch (output_of(model, effector).quantity) {
     case Quantity::orientation:
-      return {std::numbers::pi / 180.0, "deg", "rad"};
+      return {std::numbers::pi / 180.0, "deg", std::numbers::pi / 180.0, "rad"};
     case Quantity::strain:
-      return effector.strain < 3 ? Measure{1.0, "1/m", "1/m"} : Measure{0.01, "%", "-"};
+      return effector.strain < 3 ? Measure{1.0, "1/m", 1.0, "1/m"} : Measure{0.01, "%", 0.01, "1"};
+    case Quantity::touching:
+      return {0.1, "N", 1.0, "N"};
     default:
-      return output_of(model, effector).pair >= 0 ? Measure{0.1, "N/10", "N"} : Measure{};
+      return {};
   }
+}
+
+std::vector<Column> effector_columns(const Model& model, const EffectorModel& effector) {
+  const OutputModel& output = output_of(model, effector);
+  const std::string name = output.name + ".", unit = measure_of(model, effector).si;
+  if (output.quantity == Quantity::touching) return {{name + "normal", unit}};
+  if (output.quantity == Quantity::strain)
+    return {{name + rod::kStrainNames[static_cast<std::size_t>(effector.strain)], unit}};
+  return {{name + "x", unit}, {name + "y", unit}, {name + "z", unit}};
 }
 
 int effector_size(const Model& model) {
@@ -48,16 +58,6 @@ Eigen::VectorXd effector_value(const Model& model, const State& state, const Eff
         1, rod::strain(model.rods[output.rod].rod, state.rods[output.rod].q, output.abscissa)[effector.strain]);
   if (output.pair >= 0) return Eigen::VectorXd::Constant(1, pressing_of(state, output.pair).force);
   return output_position(model, state, output);
-}
-
-Pressing pressing_of(const State& state, int pair) {
-  Pressing own;
-  for (const ContactState& contact : state.contacts) {
-    if (contact.pair != pair) continue;
-    own.force += contact.force.dot(contact.normal);
-    own.gap = std::min(own.gap, contact.gap);
-  }
-  return own;
 }
 
 void goal_at(const Model& model, double time, Goal& goal) {

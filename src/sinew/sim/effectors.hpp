@@ -1,9 +1,8 @@
 // What targets are about: numbers of outputs, how far off they are, and how a linearised step changes them.
 #pragma once
 
-#include <cmath>
-
 #include "sinew/sim/linearization.hpp"
+#include "sinew/sim/quantities.hpp"
 
 namespace sinew {
 
@@ -18,13 +17,18 @@ struct Goal {
 Goal goal_at(const Model& model, double time);
 void goal_at(const Model& model, double time, Goal& goal);
 
-/// In what a person speaks of an effector's components: 1e-3 and "mm", and the name of its SI unit.
+/// An effector's components: what counts as much as 1 mm of a position [SI]; in what a person speaks of them, and how
+/// much that is; the name of the SI unit.
 struct Measure {
   double unit = 1e-3;
   const char* name = "mm";
+  double shown = 1e-3;
   const char* si = "m";
 };
 Measure measure_of(const Model& model, const EffectorModel& effector);
+
+/// Name and SI unit of each of its components: "tip.x", "m".
+std::vector<Column> effector_columns(const Model& model, const EffectorModel& effector);
 
 /// How many components all effectors have.
 int effector_size(const Model& model);
@@ -36,13 +40,6 @@ Eigen::VectorXd effector_value(const Model& model, const State& state, const Eff
 /// from the goal to where they are. Two that are to be pressed together and are still apart lack 0.1 N more for every
 /// mm between them, so that what is to press comes nearer.
 void effector_errors(const Model& model, const State& state, const Goal& goal, Eigen::VectorXd& errors);
-
-/// What presses a pair together: the sum of its normal forces [N], and the least gap [m], infinite where they are not
-/// near each other.
-struct Pressing {
-  double force = 0.0, gap = INFINITY;
-};
-Pressing pressing_of(const State& state, int pair);
 
 /// How far off one is in the components that matter [SI].
 double error_of(const EffectorModel& own, const Eigen::VectorXd& errors);

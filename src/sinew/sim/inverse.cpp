@@ -20,6 +20,10 @@ namespace {
 
 /// [mm, deg, ...] increments that move effectors no more than this end a search; goals are then met to about that.
 constexpr double kSettled = 1e-5;
+/// Further beyond a limit than this part of it, it counts as broken.
+constexpr double kBroken = 1e-4;
+/// [mm, deg, ...] that being beyond a limit costs at least, for what moves effectors by as much.
+constexpr double kLeastPenalty = 1e-2;
 
 void check(const Model& model, const Goal& goal) {
   if (model.sought.empty() || model.effectors.empty())
@@ -49,6 +53,7 @@ void Inverse::begin(const Model& model, const State& start, const Goal& goal, do
   h_ = h;
   binding_.clear();
   dropped_.clear();
+  penalty_.setZero(kRows * static_cast<Eigen::Index>(model.sought.size()));
   start_force_.clear();
   start_position_.clear();
   const auto n = static_cast<Eigen::Index>(model.sought.size());
@@ -152,6 +157,45 @@ Eigen::MatrixXd Inverse::compliance(const Model& model, Linearization& here) {
   return C;
 }
 
+Span Inverse::span_of(const ActuatorModel& motor, Eigen::Index row) const {
+  const Kind& kind = kKinds[static_cast<std::size_t>(row / J_.cols())];
+  if (!kind.of_rate) return kind.of_force ? motor.force : motor.position;
+  const double start = (kind.of_force ? start_force_ : start_position_)[static_cast<std::size_t>(row % J_.cols())];
+  const double rate = kind.of_force ? motor.force_rate : motor.speed, most = h_ > 0.0 ? rate * h_ : INFINITY;
+  return {start - most, start + most};
+}
+
+// An exact penalty: more than what a limit costs the effectors at the best there is, and never nothing.
+void Inverse::weigh_limits() {
+  for (Eigen::Index row = 0; row < penalty_.size(); ++row) {
+    const Eigen::Index a = row % J_.cols();
+    const double least = kLeastPenalty * lengths_[a] / std::max(std::abs(problem_.A(row, a)), 1e-300);
+    const double pull = 2.0 * std::abs(steering_.pulls()[row]);
+    penalty_[row] = std::max({penalty_[row], pull, std::isfinite(least) ? least : 0.0});
+  }
+}
+
+double Inverse::cost(const Model& model, const State& state) {
+  effector_errors(model, state, goal_, error_);
+  double sum = 0.5 * weights_.cwiseProduct(error_).squaredNorm();
+  for (Eigen::Index row = 0; row < penalty_.size(); ++row) {
+    if (penalty_[row] == 0.0) continue;
+    const int actuator = model.sought[static_cast<std::size_t>(row % J_.cols())];
+    const ActuatorModel& own = model.actuators[actuator];
+    const double value = kKinds[static_cast<std::size_t>(row / J_.cols())].of_force ? state.actuators[actuator]
+                                                                                    : motor_position(model, state, own);
+    sum += penalty_[row] * span_of(own, row).beyond(value);
+  }
+  return sum;
+}
+
+double Inverse::promised() const {
+  double sum = 0.5 * steering_.left().squaredNorm();
+  for (Eigen::Index row = 0; row < penalty_.size(); ++row)
+    sum += penalty_[row] * Span{problem_.lower[row], problem_.upper[row]}.beyond(steering_.rows()[row]);
+  return sum;
+}
+
 void Inverse::set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution) {
   const Model& model = context.model;
   const auto n = static_cast<Eigen::Index>(model.sought.size());
@@ -177,12 +221,7 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
       problem_.A.row(row) = kind.of_force ? F_.row(a) : X_.row(a);
       problem_.C.row(row) = kind.of_force ? F_pressed_.row(a) : X_pressed_.row(a);
       const double now = kind.of_force ? force : position;
-      Span span = kind.of_force ? own.force : own.position;
-      if (kind.of_rate) {
-        const double start = (kind.of_force ? start_force_ : start_position_)[static_cast<std::size_t>(a)];
-        const double rate = kind.of_force ? own.force_rate : own.speed, most = h_ > 0.0 ? rate * h_ : INFINITY;
-        span = {start - most, start + most};
-      }
+      const Span span = span_of(own, row);
       problem_.lower[row] = span.least - now;
       problem_.upper[row] = span.most - now;
       problem_.firmness[row] = kind.of_rate ? 1.0 : 0.0;
@@ -259,6 +298,22 @@ Aim Inverse::aim(const Model& model, const State& state) {
   aim.binding = binding_;
   aim.dropped = dropped_;
   aim.certain = steering_.certain();
+  // And what is not kept although nothing excludes it: motors that hold each other.
+  for (Eigen::Index row = 0; row < kRows * J_.cols(); ++row) {
+    const int actuator = model.sought[static_cast<std::size_t>(row % J_.cols())];
+    const Kind& kind = kKinds[static_cast<std::size_t>(row / J_.cols())];
+    const Span span = span_of(model.actuators[actuator], row);
+    const double value =
+        kind.of_force ? state.actuators[actuator] : motor_position(model, state, model.actuators[actuator]);
+    const bool below = value < span.least;
+    const double limit = below ? span.least : span.most;
+    if (!(span.beyond(value) > kBroken * std::max(std::abs(limit), std::abs(value)))) continue;
+    const Bound bound{actuator, below ? kind.least : kind.most};
+    const auto same = [&](const Bound& other) {
+      return other.actuator == bound.actuator && other.limit == bound.limit;
+    };
+    if (std::none_of(aim.dropped.begin(), aim.dropped.end(), same)) aim.dropped.push_back(bound);
+  }
   for (std::size_t k = 0; k < model.effectors.size(); ++k) {
     const EffectorModel& own = model.effectors[k];
     const int pair = model.outputs[own.output].pair;
@@ -342,6 +397,10 @@ namespace {
 constexpr int kMostTurns = 60;
 /// First region of trust, as a part of the scene's size.
 constexpr double kFirstReach = 0.2;
+/// Half the square of a weighed error that is as good as none.
+constexpr double kMet = 0.5e-4;
+/// What is not worth another turn.
+constexpr double kNoGain = 1e-8;
 
 /// Solves the linear problem at Memory::iterate in Memory::context; false where a matrix is singular.
 bool solve_there(Memory& memory, solid::Tangent tangent, StageTimes& times, const Linearization::Steer& steer) {
@@ -372,15 +431,6 @@ bool linearize_step(Memory& memory, const State& start, const Command& command, 
   return solve_there(memory, solid::Tangent::definite, times, steer);
 }
 
-double merit_of(const Model& model, const State& state, const Goal& goal) {
-  Eigen::VectorXd errors;
-  effector_errors(model, state, goal, errors);
-  double sum = 0.0;
-  for (const EffectorModel& own : model.effectors)
-    sum += own.weights.cwiseProduct(errors.segment(own.first, own.size)).squaredNorm();
-  return sum;
-}
-
 }  // namespace
 
 StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,
@@ -396,29 +446,32 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   // Where friction remembers the way, every trial goes the whole of it.
   const bool remembers = !model.pairs.empty() || !model.rubbing.empty();
   StepReport spent = at.report;
-  double reach = kFirstReach * model.size * 1e3, merit = merit_of(model, at.next, goal);
+  double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     inverse.reach = reach;
     const bool ok = linearize_at(
         memory, remembers ? state : at.next, at.next, told, time, spent.times,
         [&](Increment& increment) { inverse.steer(memory.context, memory.iterate.state, memory.here, increment); });
     ++spent.newton;
-    if (!ok || (inverse.motion() <= kSettled && inverse.settled(told, model))) break;
+    if (!ok) break;
+    inverse.weigh_limits();
+    const double cost = inverse.cost(model, at.next), promised = cost - inverse.promised();
+    if (inverse.motion() <= kSettled && inverse.settled(told, model) && promised <= kNoGain) break;
     Command next = told;
     inverse.take(1.0, model, next);
-    const double promised = merit - inverse.left().squaredNorm();
     StepResult trial = equilibrium_step(model, workspace, next, remembers ? state : at.next, time);
     spent.newton += trial.report.newton;
     spent.times += trial.report.times;
-    const double found = accepted(trial.report.status) ? merit_of(model, trial.next, goal) : INFINITY;
-    const bool better = found < merit - 1e-4 * std::abs(promised) || std::sqrt(found) < 0.01;
+    const double found = accepted(trial.report.status) ? inverse.cost(model, trial.next) : INFINITY;
+    const bool better = found < cost - 1e-4 * std::abs(promised) || found < kMet;
     const double moved = inverse.moved();
+    // Where there is no equilibrium any more, none is looked for again.
+    if (!accepted(trial.report.status)) farthest = 0.5 * moved;
     if (better) {
-      if (merit - found > 0.75 * promised) reach = std::max(reach, 2.0 * moved);
-      if (merit - found < 0.25 * promised) reach = std::max(0.5 * moved, kSettled);
+      if (cost - found > 0.75 * promised) reach = std::min(std::max(reach, 2.0 * moved), farthest);
+      if (cost - found < 0.25 * promised) reach = std::max(0.5 * moved, kSettled);
       at = std::move(trial);
       told = next;
-      merit = found;
     } else {
       reach = 0.25 * std::min(reach, moved);
       if (!(reach > kSettled)) break;
@@ -430,7 +483,8 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
     StepResult whole = equilibrium_step(model, workspace, told, state, time);
     spent.newton += whole.report.newton;
     spent.times += whole.report.times;
-    if (accepted(whole.report.status) && merit_of(model, whole.next, goal) <= merit * (1.0 + 1e-6) + 1e-8)
+    if (accepted(whole.report.status) &&
+        inverse.cost(model, whole.next) <= inverse.cost(model, at.next) * (1.0 + 1e-6) + 1e-8)
       at = std::move(whole);
   }
   StepReport report = at.report;
@@ -470,15 +524,8 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
   if (!ok || !inverse.jacobian().allFinite()) throw std::runtime_error("actuator_jacobian: a matrix is singular");
   ActuatorJacobian result{inverse.jacobian(), compliance, inverse.force_change(), inverse.position_change(), {}, {}};
   for (const EffectorModel& own : model.effectors) {
-    const OutputModel& output = model.outputs[own.output];
-    const bool strain = output.rod >= 0 && output.quantity == Quantity::strain, press = output.pair >= 0;
-    const std::string unit = std::string(" [") + measure_of(model, own).si + "]";
-    for (int i = 0; i < own.size; ++i)
-      result.rows.push_back(output.name + "." +
-                            (press    ? "normal"
-                             : strain ? rod::kStrainNames[static_cast<std::size_t>(own.strain)]
-                                      : std::array{"x", "y", "z"}[static_cast<std::size_t>(i)]) +
-                            unit);
+    for (const Column& component : effector_columns(model, own))
+      result.rows.push_back(component.name + " [" + component.unit + "]");
   }
   for (const int actuator : model.sought) {
     const ActuatorModel& own = model.actuators[actuator];

@@ -30,7 +30,11 @@ class Inverse {
   bool settled(const Command& command, const Model& model) const;
   /// How far the linearisation's increments would move the effectors, weighed.
   double motion() const { return (steering_.left() - problem_.e).norm(); }
-  const Eigen::VectorXd& left() const { return steering_.left(); }  ///< weighed errors that the linearisation leaves
+  /// What searches make small: half the square of weighed errors, and what it costs to be beyond limits. `weigh_limits`
+  /// raises that to what the last increments have shown; `promised` is what they leave of it, by the linearisation.
+  double cost(const Model& model, const State& state);
+  double promised() const;
+  void weigh_limits();
   /// What came of it, at the state that the step has ended in.
   Aim aim(const Model& model, const State& state);
   /// The longest increment, in the measure of `reach`.
@@ -50,6 +54,7 @@ class Inverse {
   Eigen::MatrixXd position_change() const { return X_ + X_pressed_ * S_; }
 
  private:
+  Span span_of(const ActuatorModel& motor, Eigen::Index row) const;
   void set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution);
 
   Goal goal_;
@@ -58,7 +63,7 @@ class Inverse {
   EffectorRows rows_;
   solve::RightSide unit_;
   std::vector<solve::CoupledSolution> responses_;
-  Eigen::VectorXd error_, base_, weights_, forces_, moved_, lengths_, preferred_;
+  Eigen::VectorXd error_, base_, weights_, forces_, moved_, lengths_, preferred_, penalty_;
   Eigen::MatrixXd J_, F_, X_;                  ///< d(errors, forces of motors, their places) / d commands
   Eigen::MatrixXd L_, F_pressed_, X_pressed_;  ///< and by forces at contacts
   Eigen::MatrixXd S_;                          ///< which follow commands by this

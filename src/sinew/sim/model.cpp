@@ -277,6 +277,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     if (output.quantity == Quantity::orientation) output.upright = output_axes(model, start, output);
   }
   for (EffectorModel& effector : model.effectors) effector.start = effector_value(model, start, effector);
+  warn_of_units(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();
   for (const Overlap& own : overlaps(model, start)) {

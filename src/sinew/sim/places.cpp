@@ -24,12 +24,28 @@ Vec3 solid_point(const Model& model, const State& state, int solid, const solid:
   return solid::position(where, model.solids[solid].body.cells, state.solids[solid].x);
 }
 
+Vec3 output_position(const Model& model, const State& state, const OutputModel& output) {
+  if (output.solid >= 0) return solid_point(model, state, output.solid, output.where);
+  if (output.body >= 0) return state.bodies[output.body].p;
+  return rod::position(rod_shape(model, state, output.rod), output.abscissa);
+}
+
 rod::Mat3 output_axes(const Model& model, const State& state, const OutputModel& output) {
   if (output.body >= 0) return state.bodies[output.body].R;
   if (output.rod >= 0) return rod::branch(rod_shape(model, state, output.rod), output.abscissa).R;
   rod::Mat3 F;
   for (int i = 0; i < 3; ++i) F.col(i) = solid_point(model, state, output.solid, output.axes[i]);
   return solid::polar_rotation(F);
+}
+
+Pressing pressing_of(const State& state, int pair) {
+  Pressing own;
+  for (const ContactState& contact : state.contacts) {
+    if (contact.pair != pair) continue;
+    own.force += contact.force.dot(contact.normal);
+    own.gap = std::min(own.gap, contact.gap);
+  }
+  return own;
 }
 
 int count_folded(const Model& model, const State& state) {

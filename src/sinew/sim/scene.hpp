@@ -290,6 +290,8 @@ enum class Driven { force, displacement, torque, angle };
 /// Least and most of something.
 struct Span {
   double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+  /// How far a value is outside.
+  double beyond(double value) const { return value < least ? least - value : value > most ? value - most : 0.0; }
 };
 
 /// What a motor can do, which the inverse problem keeps to. Of a motor that turns: torques, angles.
@@ -338,8 +340,8 @@ using Load = std::variant<RodLoad, SolidLoad>;
 /// What is recorded of a material point, of a solid (`point`) or a rod (`at`); `reaction`: the force with which a
 /// solid's held nodes in `region` are held; `orientation`: how far it has turned since the start. Of a rigid body where
 /// its centre of mass is, how it has turned, or the force of all that touches it. Of two objects (`between`) how they
-/// touch.
-enum class Quantity { position, displacement, orientation, strain, force, moment, stress, reaction };
+/// touch (`touching`). sim/quantities.hpp lists what is known of what.
+enum class Quantity { position, displacement, orientation, strain, force, moment, stress, reaction, touching };
 struct Output {
   std::optional<std::string> solid;
   std::optional<std::string> rod;
@@ -349,7 +351,7 @@ struct Output {
   std::optional<double> at;                ///< [m] abscissa on a rod
   std::optional<double> reach;             ///< as for Slide
   std::optional<Region> region;            ///< of a reaction; none: all
-  Quantity quantity = Quantity::position;  ///< displacement and reaction: of a solid; force and moment: of a rod
+  Quantity quantity = Quantity::position;  ///< `between`: without meaning, it is `touching`
 };
 
 /// Numbers over time, piecewise linear, first and last held outside. What stands still has one time.

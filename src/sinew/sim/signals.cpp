@@ -5,7 +5,6 @@
 
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/sim/effectors.hpp"
-#include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/solid_loads.hpp"
 
@@ -13,168 +12,20 @@ namespace sinew {
 
 namespace {
 
-std::vector<std::string> named(const std::string& name, std::initializer_list<const char*> parts) {
-  std::vector<std::string> names;
-  for (const char* part : parts) names.push_back(name + "." + part);
-  return names;
-}
-
-template <class Vector>
-std::vector<double> numbers(const Vector& v) {
-  return {v.data(), v.data() + v.size()};
-}
-
-/// A symmetric tensor as xx yy zz yz xz xy.
-std::vector<double> six(const solid::Mat3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(1, 2), t(0, 2), t(0, 1)}; }
-
-/// Sum over the chosen nodes' held coordinates.
-Vec3 reaction(const Model& model, const State& state, const OutputModel& output) {
-  const solid::Body& body = model.solids[output.solid].body;
-  Vec3 sum = Vec3::Zero();
-  Eigen::Index held = 0;
-  for (int node = 0; node < body.nodes(); ++node) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (body.unknown(axis, node) >= 0) continue;
-      if (output.nodes[node]) sum[axis] += state.solids[output.solid].reaction[held];
-      ++held;
-    }
-  }
-  return sum;
-}
-
-SignalGroup position_group(const OutputModel& output) {
-  return {named(output.name, {"x", "y", "z"}),
-          [=](const Model& model, const State& state) { return numbers(output_position(model, state, output)); }};
-}
-
-SignalGroup orientation_group(const OutputModel& output) {
-  return {named(output.name, {"x", "y", "z"}),
-          [=](const Model& model, const State& state) { return numbers(output_turn(model, state, output)); }};
-}
-
-// Without a default, so that the compiler asks where a new quantity belongs.
-SignalGroup solid_group(const OutputModel& output) {
-  static constexpr std::initializer_list<const char*> kSix = {"xx", "yy", "zz", "yz", "xz", "xy"};
-  static constexpr std::initializer_list<const char*> kStress = {
-      "xx", "yy", "zz", "yz", "xz", "xy", "von_mises", "principal_1", "principal_2", "principal_3"};
-  const int solid = output.solid;
-  switch (output.quantity) {
-    case Quantity::displacement:
-      return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
-                const solid::Body& body = model.solids[solid].body;
-                return numbers(
-                    Vec3(output_position(model, state, output) - solid::position(output.where, body.cells, body.rest)));
-              }};
-    case Quantity::strain:
-      return {named(output.name, kSix), [=](const Model& model, const State& state) {
-                return six(solid::green_strain(model.solids[solid].body, output.where, state.solids[solid].x));
-              }};
-    case Quantity::stress:
-      return {named(output.name, kStress), [=](const Model& model, const State& state) {
-                const solid::Mat3 stress =
-                    solid::cauchy_stress(model.solids[solid].body, output.where, state.solids[solid].x);
-                std::vector<double> values = six(stress);
-                values.push_back(solid::von_mises(stress));
-                const Vec3 principal = solid::principal_values(stress);
-                values.insert(values.end(), principal.begin(), principal.end());
-                return values;
-              }};
-    case Quantity::reaction:
-      return {named(output.name, {"x", "y", "z"}),
-              [=](const Model& model, const State& state) { return numbers(reaction(model, state, output)); }};
-    case Quantity::orientation:
-      return orientation_group(output);
-    case Quantity::position:
-    case Quantity::force:
-    case Quantity::moment:
-      break;
-  }
-  return position_group(output);
-}
-
-/// Force [N] of all that touches a body.
-Vec3 touching_force(const Model& model, const State& state, int body) {
-  const Collider own{Collider::Kind::body, body};
-  Vec3 sum = Vec3::Zero();
-  for (const ContactState& contact : state.contacts) {
-    const PairModel& pair = model.pairs[contact.pair];
-    if (pair.b == own) sum += force_on_second(contact);
-    if (pair.a == own) sum -= force_on_second(contact);
-  }
-  return sum;
-}
-
-SignalGroup body_group(const OutputModel& output) {
-  const int body = output.body;
-  const bool force = output.quantity == Quantity::force;
-  if (output.quantity == Quantity::orientation) return orientation_group(output);
-  return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
-            return numbers(force ? touching_force(model, state, body) : state.bodies[body].p);
-          }};
-}
-
-SignalGroup pair_group(const OutputModel& output) {
-  const int pair = output.pair;
-  const double sign = output.turned ? 1.0 : -1.0;
-  return {named(output.name, {"x", "y", "z", "normal", "contacts", "sliding", "gap"}),
-          [=](const Model& model, const State& state) {
-            Vec3 sum = Vec3::Zero();
-            double contacts = 0.0, sliding = 0.0;
-            for (const ContactState& own : state.contacts) {
-              if (own.pair != pair) continue;
-              sum += sign * force_on_second(own);
-              if (own.force.isZero()) continue;  // only watched
-              contacts += 1.0;
-              sliding += slides(model, own) ? 1.0 : 0.0;
-            }
-            const auto [normal, gap] = pressing_of(state, pair);
-            return std::vector<double>{
-                sum.x(), sum.y(), sum.z(), normal, contacts, sliding, std::isfinite(gap) ? gap : 0.0};
-          }};
-}
-
 SignalGroup output_group(const OutputModel& output) {
-  if (output.solid >= 0) return solid_group(output);
-  if (output.body >= 0) return body_group(output);
-  if (output.pair >= 0) return pair_group(output);
-  const int rod = output.rod;
-  const double s = output.abscissa;
-  switch (output.quantity) {
-    case Quantity::strain:
-      return {named(output.name, {"torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"}),
-              [=](const Model& model, const State& state) {
-                return numbers(rod::strain(model.rods[rod].rod, state.rods[rod].q, s));
-              }};
-    case Quantity::force:
-      return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
-                return numbers(Vec3(internal_wrench(model, state, rod, s).tail<3>()));
-              }};
-    case Quantity::moment:
-      return {named(output.name, {"x", "y", "z"}), [=](const Model& model, const State& state) {
-                return numbers(Vec3(internal_wrench(model, state, rod, s).head<3>()));
-              }};
-    case Quantity::stress:
-      return {named(output.name, {"axial", "bending", "torsion", "von_mises"}),
-              [=](const Model& model, const State& state) {
-                const rod::SectionStress stress = section_stress(model, state, rod, s);
-                return std::vector<double>{stress.axial, stress.bending, stress.torsion, stress.von_mises};
-              }};
-    case Quantity::orientation:
-      return orientation_group(output);
-    case Quantity::position:
-    case Quantity::displacement:
-    case Quantity::reaction:
-      break;
-  }
-  return position_group(output);
+  const OutputKind& kind = kind_of(output);
+  SignalGroup group;
+  for (const Column& own : kind.columns) group.columns.push_back({output.name + "." + own.name, own.unit});
+  group.values = [=](const Model& model, const State& state) { return kind.values(model, state, output); };
+  return group;
 }
 
 SignalGroup motor_group(const Model& all) {
   SignalGroup group;
   for (const ActuatorModel& actuator : all.actuators) {
     const MotorWords words = words_of(actuator);
-    group.names.push_back(actuator.name + "." + words.position);
-    group.names.push_back(actuator.name + "." + words.force);
+    group.columns.push_back({actuator.name + "." + words.position, words.position_unit});
+    group.columns.push_back({actuator.name + "." + words.force, words.force_unit});
   }
   group.values = [](const Model& model, const State& state) {
     std::vector<double> values;
@@ -191,20 +42,21 @@ SignalGroup motor_group(const Model& all) {
 /// Where a target is, and how far off its output.
 SignalGroup target_group(const Model& all, std::size_t number) {
   const EffectorModel& effector = all.effectors[number];
-  const std::string name = all.outputs[effector.output].name + ".target";
+  const std::string name = all.outputs[effector.output].name, unit = measure_of(all, effector).si;
   SignalGroup group;
   if (effector.size == 1) {
-    group.names = {name};
+    group.columns = {{name + ".target", unit}};
   } else {
-    group.names = named(name, {"x", "y", "z"});
+    for (const char* const axis : {".x", ".y", ".z"}) group.columns.push_back({name + ".target" + axis, unit});
   }
-  group.names.push_back(all.outputs[effector.output].name + ".error");
+  group.columns.push_back({name + ".error", unit});
   group.values = [number](const Model& model, const State& state) {
     const EffectorModel& own = model.effectors[number];
     const Goal goal = goal_at(model, state.time);
     Eigen::VectorXd errors;
     effector_errors(model, state, goal, errors);
-    std::vector<double> values = numbers(Eigen::VectorXd(goal.at.segment(own.first, own.size)));
+    const auto at = goal.at.segment(own.first, own.size);
+    std::vector<double> values(at.begin(), at.end());
     values.push_back(error_of(own, errors));
     return values;
   };
@@ -212,12 +64,15 @@ SignalGroup target_group(const Model& all, std::size_t number) {
 }
 
 SignalGroup energy_group() {
-  return {named("energy", {"kinetic", "elastic", "weight", "work", "dissipated"}),
-          [](const Model& model, const State& state) {
-            const EnergyBalance now = energy_balance(model, state);
-            return std::vector<double>{now.kinetic, now.elastic, now.weight, state.energies.work,
-                                       model.start_energy + state.energies.work - now.total()};
-          }};
+  SignalGroup group;
+  for (const char* const part : {"kinetic", "elastic", "weight", "work", "dissipated"})
+    group.columns.push_back({std::string("energy.") + part, "J"});
+  group.values = [](const Model& model, const State& state) {
+    const EnergyBalance now = energy_balance(model, state);
+    return std::vector<double>{now.kinetic, now.elastic, now.weight, state.energies.work,
+                               model.start_energy + state.energies.work - now.total()};
+  };
+  return group;
 }
 
 }  // namespace
@@ -225,8 +80,8 @@ SignalGroup energy_group() {
 std::vector<SignalGroup> signal_groups(const Model& model) {
   std::vector<SignalGroup> groups;
   if (model.scene.analysis == Analysis::modal) {
-    groups.push_back(
-        {{"mode.frequency"}, [](const Model&, const State& state) { return std::vector<double>{state.frequency}; }});
+    groups.push_back({{{"mode.frequency", "Hz"}},
+                      [](const Model&, const State& state) { return std::vector<double>{state.frequency}; }});
   }
   for (const OutputModel& output : model.outputs) groups.push_back(output_group(output));
   for (std::size_t i = 0; i < model.effectors.size(); ++i) {
@@ -239,10 +94,16 @@ std::vector<SignalGroup> signal_groups(const Model& model) {
   return groups;
 }
 
+std::vector<Column> signal_columns(const Model& model) {
+  std::vector<Column> columns;
+  for (const SignalGroup& group : signal_groups(model))
+    columns.insert(columns.end(), group.columns.begin(), group.columns.end());
+  return columns;
+}
+
 std::vector<std::string> signal_names(const Model& model) {
   std::vector<std::string> names;
-  for (const SignalGroup& group : signal_groups(model))
-    names.insert(names.end(), group.names.begin(), group.names.end());
+  for (Column& own : signal_columns(model)) names.push_back(std::move(own.name));
   return names;
 }
 
@@ -253,12 +114,6 @@ std::vector<double> signal_values(const Model& model, const State& state) {
     values.insert(values.end(), own.begin(), own.end());
   }
   return values;
-}
-
-Vec3 output_position(const Model& model, const State& state, const OutputModel& output) {
-  if (output.solid >= 0) return solid_point(model, state, output.solid, output.where);
-  if (output.body >= 0) return state.bodies[output.body].p;
-  return rod::position(rod_shape(model, state, output.rod), output.abscissa);
 }
 
 double dropped_gap(const Model& model, const State& state) {

@@ -5,23 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "sinew/sim/state.hpp"
+#include "sinew/sim/quantities.hpp"
 
 namespace sinew {
 
-/// One list for all signals: the names of a group of columns, and what fills them. A new quantity is a new entry.
+/// A group of columns, with their whole names, and what fills them.
 struct SignalGroup {
-  std::vector<std::string> names;
+  std::vector<Column> columns;
   std::function<std::vector<double>(const Model&, const State&)> values;
 };
 
 /// In the order of the columns:
 ///   mode.frequency [Hz], of a modal analysis only, negative where the equilibrium is unstable;
-///   <output>.x|y|z [m], or .torsion .. .shear_z [1/m, -] of `strain`, .x|y|z in the axes of the cross-section of
-///   `force` [N] and `moment` [N m], .axial|bending|torsion|von_mises of `stress` [Pa]; of a
-///   solid also .xx .. of `strain` and `stress` and .x|y|z of `reaction` (NOTATION.md has all); of a rigid body .x|y|z
-///   of its place or of the force on it; of two that touch .x|y|z, the force on the first, .normal [N], the sum of
-///   normal forces, .contacts, their number, .sliding, how many of them slide, .gap [m], the least;
+///   <output>.<column>, as sim/quantities.hpp lists them;
 ///   <output>.target.x|y|z or .target, where the target of an output is, and .error, how far off that is, in the
 ///   components that matter [m], [rad], [1/m] or 1;
 ///   <actuator>.displacement [m] and .force [N], or .angle [rad] and .torque [N m];
@@ -30,11 +26,10 @@ struct SignalGroup {
 ///   the material and of the time step (and, with a minus, work of frames that move bases and ties of rods).
 std::vector<SignalGroup> signal_groups(const Model& model);
 
+/// Name and unit of each column.
+std::vector<Column> signal_columns(const Model& model);
 std::vector<std::string> signal_names(const Model& model);
 std::vector<double> signal_values(const Model& model, const State& state);
-
-/// Position [m] of an output, other than of a pair.
-Vec3 output_position(const Model& model, const State& state, const OutputModel& output);
 
 /// Largest distance [m] between a dropped sliding point and its rod: what the rows that were left out would have said.
 /// 0 if none was dropped.

@@ -157,7 +157,7 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
     view.sliding_points.push_back({"", solid_point(model, state, model.points[k].solid, model.points[k].where)});
   }
   for (const OutputModel& output : model.outputs) {
-    if (output.quantity != Quantity::position || output.pair >= 0) continue;
+    if (output.quantity != Quantity::position) continue;
     view.outputs.push_back({output.name, output_position(model, state, output)});
   }
   return view;

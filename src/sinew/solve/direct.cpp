@@ -495,8 +495,9 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
       left[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
     Eigen::VectorXd& own = rest.chains[n];  // stands with the sign of r
     pull_of(part, y_, attached, own);
-    linalg::multiply(part.chain, x, twist, answer);
-    const double size = std::max({largest(right.chains[n]), largest(own), largest(answer)});
+    // (Inertia of a base that is moved and of strains may cancel to nothing.)
+    const double parts = linalg::multiply(part.chain, x, twist, answer);
+    const double size = std::max({largest(right.chains[n]), largest(own), parts});
     own += right.chains[n] + answer;
     if (size > 0.0) relative = std::max(relative, largest(own) / size);
     if (!x.allFinite()) relative = INFINITY;

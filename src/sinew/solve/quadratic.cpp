@@ -5,6 +5,13 @@
 
 namespace sinew::solve {
 
+namespace {
+
+/// A limit that others exclude by no more than this part of what it is about does not contradict them.
+constexpr double kMet = 1e-10;
+
+}  // namespace
+
 /// Q R = L^-1 N, N the normals of the active limits.
 void Quadratic::span() {
   const Eigen::Index n = rows_.rows();
@@ -72,6 +79,7 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
   const auto rows = static_cast<int>(A.rows());
   iterations_ = 0;
   at_.assign(static_cast<std::size_t>(rows), At::between);
+  met_.assign(static_cast<std::size_t>(rows), false);
   conflict_.clear();
   active_.clear();
   pulls_.setZero(rows);
@@ -100,7 +108,7 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
     Limit next{-1};
     double worst = 0.0;
     for (int i = 0; i < rows; ++i) {
-      if (at_[i] != At::between) continue;
+      if (at_[i] != At::between || met_[static_cast<std::size_t>(i)]) continue;
       const double below = lower[i] - values_[i], above = values_[i] - upper[i], out = std::max(below, above);
       const double bound = below > above ? lower[i] : upper[i];
       if (!(out > 1e-13 * (scale_[i] * size + std::abs(bound)))) continue;
@@ -140,6 +148,11 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
       const double out = bound - normal_.dot(x), gain = normal_.dot(along_);
       const double primal = gain > 0.0 ? std::max(0.0, out / gain) : INFINITY;
       const double step = std::min(primal, dual);
+      // What the others leave of it is rounding, of a matrix that may be nearly singular: it is met as well as can be.
+      if (step == INFINITY && out <= kMet * (scale_[next.row] * size + std::abs(bound))) {
+        met_[static_cast<std::size_t>(next.row)] = true;
+        break;
+      }
       if (step == INFINITY) {
         conflict_ = {next.row};
         for (std::size_t k = 0; k < active_.size(); ++k) {

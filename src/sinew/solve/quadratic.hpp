@@ -49,6 +49,7 @@ class Quadratic {
               const Eigen::VectorXd& upper, Eigen::VectorXd& x);
 
   std::vector<At> at_;
+  std::vector<bool> met_;  ///< by others, to rounding
   std::vector<int> conflict_;
   std::vector<Limit> active_;
   Eigen::LLT<Eigen::MatrixXd> factor_;

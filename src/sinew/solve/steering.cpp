@@ -127,44 +127,52 @@ bool Steering::piece(const SteeringProblem& problem, Point& at, Stay stay) {
 }
 
 /// Widens limits that exclude each other by as little as can be: those of least firmness and, only where that does not
-/// help, firmer ones too.
+/// help, firmer ones too. First the least t that make A d + t keep the limits, of d only as far as that leaves a choice
+/// the shortest; then nothing more is asked of these than to become no worse.
 bool Steering::relax(const SteeringProblem& problem, Point& at) {
-  const Eigen::Index n = H_.rows(), m = problem.A.rows();
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(n + m), unit(m), x;
-  double farthest = 0.0;  // that limits are about
+  constexpr double kShort = 1e-10, kRounding = 1e-10;
+  const Eigen::Index n = A_.cols(), m = problem.A.rows();
+  // Limits in units of what they are, commands in units of what these limits ask of them.
+  Eigen::VectorXd unit(m), length = Eigen::VectorXd::Zero(n), x;
   for (Eigen::Index row = 0; row < m; ++row) {
     const auto size = [](double limit) { return std::isfinite(limit) ? std::abs(limit) : 0.0; };
-    unit[row] = std::max({size(lower_[row]), size(upper_[row]), 1e-300});
-    const double steep = A_.row(row).cwiseAbs().maxCoeff();
-    if (steep > 0.0) farthest = std::max(farthest, unit[row] / steep);
+    unit[row] = std::max(size(lower_[row]), size(upper_[row]));
+    const double steep = n > 0 ? A_.row(row).cwiseAbs().maxCoeff() : 0.0;
+    for (Eigen::Index a = 0; a < n; ++a) {
+      if (std::abs(A_(row, a)) > 1e-3 * steep) length[a] = std::max(length[a], unit[row] / std::abs(A_(row, a)));
+    }
   }
-  const double scale =
-      std::max({g_.cwiseAbs().maxCoeff() * farthest, H_.diagonal().maxCoeff() * farthest * farthest, 1e-300});
-  g.head(n) = g_ / scale;
+  for (double& own : length) own = own > 0.0 ? own : 1.0;
+  Eigen::MatrixXd H = Eigen::MatrixXd::Identity(n + m, n + m), A = Eigen::MatrixXd::Zero(m, n + m);
+  H.diagonal().head(n).setConstant(kShort);
+  A.leftCols(n) = A_.topRows(m) * length.asDiagonal();
+  Eigen::VectorXd least = lower_.head(m), most = upper_.head(m);
+  for (Eigen::Index row = 0; row < m; ++row) {
+    if (unit[row] == 0.0) unit[row] = std::max(A.row(row).cwiseAbs().maxCoeff(), 1e-300);
+    A.row(row) /= unit[row];
+    least[row] /= unit[row];
+    most[row] /= unit[row];
+  }
   for (double firmness = problem.firmness.minCoeff(); std::isfinite(firmness);) {
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n + m, n + m), A = Eigen::MatrixXd::Zero(m, n + m);
-    H.topLeftCorner(n, n) = H_ / scale;
-    H.diagonal().tail(m).setConstant(1e10);
-    A.leftCols(n) = A_.topRows(m);
     double firmer = INFINITY;
     for (Eigen::Index row = 0; row < m; ++row) {
-      if (problem.firmness[row] <= firmness) {
-        A(row, n + row) = unit[row];
-      } else {
-        firmer = std::min(firmer, problem.firmness[row]);
-      }
+      A(row, n + row) = problem.firmness[row] <= firmness ? 1.0 : 0.0;
+      if (problem.firmness[row] > firmness) firmer = std::min(firmer, problem.firmness[row]);
     }
     firmness = firmer;
-    if (quadratic_.minimise(H, g, A, lower_, upper_, x) != Quadratic::Outcome::solved) continue;
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n + m);
+    if (quadratic_.minimise(H, zero, A, least, most, x) != Quadratic::Outcome::solved) continue;
     for (Eigen::Index row = 0; row < m; ++row) {
-      const double more = A(row, n + row) * x[n + row];
-      if (!(std::abs(x[n + row]) > 1e-9) || more == 0.0) continue;
-      // Nothing is asked of it any more but to become no worse.
-      const bool below = more > 0.0;
-      const double wider = more * (1.0 + 1e-9);
-      (below ? lower_[row] : upper_[row]) -= wider;
-      (below ? at.lower[row] : at.upper[row]) -= wider;
-      at.broken.push_back({static_cast<int>(row), below ? At::lower : At::upper});
+      if (A(row, n + row) == 0.0) continue;
+      const double more = x[n + row];
+      // (Limits that just meet exclude each other by rounding, which is not worth a word.)
+      const double down = unit[row] * (kRounding + std::max(0.0, more)),
+                   up = unit[row] * (kRounding - std::min(0.0, more));
+      lower_[row] -= down;
+      at.lower[row] -= down;
+      upper_[row] += up;
+      at.upper[row] += up;
+      if (std::abs(more) > 1e-9) at.broken.push_back({static_cast<int>(row), more > 0.0 ? At::lower : At::upper});
     }
     return true;
   }

@@ -48,8 +48,9 @@ class Steering {
 
   const Eigen::VectorXd& p() const { return here_.p; }
   const Eigen::VectorXd& lambda() const { return here_.lambda; }
-  const Eigen::VectorXd& left() const { return here_.e; }  ///< e(p)
-  const Eigen::VectorXd& pulls() const { return pulls_; }  ///< as Quadratic's, of the last piece
+  const Eigen::VectorXd& left() const { return here_.e; }     ///< e(p)
+  const Eigen::VectorXd& rows() const { return here_.rows; }  ///< what limits are on, at p
+  const Eigen::VectorXd& pulls() const { return pulls_; }     ///< as Quadratic's, of the last piece
   const Eigen::VectorXd& strength() const {
     return strength_;
   }  ///< of each limit: a pull that matters is not far below
