@@ -4,6 +4,7 @@
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/loaded_scene.hpp"
 #include "sinew/sim/contacts.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/solid/mesh_order.hpp"
 #include "sinew/solid/mesh_summary.hpp"
@@ -126,13 +127,13 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
   }
   for (std::size_t i = 0; i < model.couplings.size(); ++i) print_coupling(model, i);
   for (const ActuatorModel& actuator : model.actuators) {
-    static const char* const names[] = {"force", "displacement", "torque", "angle"};
+    const MotorWords words = words_of(actuator);
     fmt::print("actuator {}: {} of rod {}, driven by {}{}\n", actuator.name,
-               actuator.tendon                          ? "tendon"
-               : actuator.motion == Motion::translation ? "translation"
-                                                        : "rotation",
+               actuator.tendon    ? "tendon"
+               : actuator.turns() ? "rotation"
+                                  : "translation",
                actuator.line.rod >= 0 ? model.rods[actuator.line.rod].name : model.cables[actuator.line.cable].name,
-               names[static_cast<int>(actuator.driven)],
+               actuator.told_force() ? words.force : words.position,
                actuator.sought()                                  ? ", which is to be found"
                : std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)"
                                                                   : "");

@@ -12,6 +12,7 @@
 #include "sinew/io/signals_csv.hpp"
 #include "sinew/io/vtu.hpp"
 #include "sinew/sim/inverse.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
@@ -129,6 +130,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
   report["inputs_hash"] = recording.header.inputs_hash;
   for (const auto& [name, hash] : loaded.inputs) report["inputs"].push_back({{"file", name}, {"xxh3_128", hash}});
   report["sizes"] = sizes_json(loaded.model);
+  for (const Column& column : signal_columns(loaded.model)) report["units"][column.name] = column.unit;
   report["warnings"] = summary.warnings;
   report["end"] = {{"how", summary.end}, {"time_s", recording.steps.empty() ? 0.0 : recording.steps.back().time}};
   if (summary.end == "numerical_stop") {

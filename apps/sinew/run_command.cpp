@@ -11,10 +11,10 @@
 #include "sinew/io/csv_table.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/results.hpp"
-#include "sinew/sim/effectors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
 
 namespace sinew::app {

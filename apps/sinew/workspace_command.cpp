@@ -12,9 +12,10 @@
 #include "sinew/io/readable.hpp"
 #include "sinew/loaded_scene.hpp"
 #include "sinew/progress.hpp"
-#include "sinew/sim/effectors.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/reach.hpp"
+#include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
 
 namespace sinew::app {
@@ -43,7 +44,7 @@ std::string row_of(const Model& model, const ReachSample& sample) {
   std::string row = fmt::format("{},{}", to_string(sample.status), sample.within ? 1 : 0);
   const bool known = accepted(sample.status);
   for (std::size_t a = 0; a < model.sought.size(); ++a) {
-    const bool force = model.actuators[model.sought[a]].row < 0;
+    const bool force = model.actuators[model.sought[a]].told_force();
     row += !known
                ? (force ? fmt::format(",,{:.17g}", sample.commands[a]) : fmt::format(",{:.17g},", sample.commands[a]))
                : fmt::format(",{:.17g},{:.17g}", sample.positions[a], sample.forces[a]);

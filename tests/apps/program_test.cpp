@@ -165,6 +165,8 @@ TEST(Run, ReportsWhatItDid) {
   EXPECT_EQ(report["sizes"]["rods"]["cable"]["sections"], 6);
   EXPECT_NEAR(report["sizes"]["rods"]["cable"]["length_m"].get<double>(), 0.09, 1e-15);
   EXPECT_EQ(report["sizes"]["sliding_points"], 3);
+  EXPECT_EQ(report["units"]["tip.x"], "m");
+  EXPECT_EQ(report["units"]["pull.force"], "N");
   EXPECT_TRUE(report["warnings"].is_array());
   EXPECT_EQ(report["end"]["how"], "done");
   EXPECT_EQ(report["end"]["time_s"], 0.05);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "sinew/io/mesh_file.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"

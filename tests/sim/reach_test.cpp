@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sinew/error/input_error.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/statics.hpp"
 #include "support/meshes.hpp"

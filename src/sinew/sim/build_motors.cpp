@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 
 namespace sinew::building {
@@ -69,10 +70,9 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
   ActuatorModel own;
   own.name = name;
   own.line = find_line(model, actuator.rod, path + ".rod");
-  own.motion = actuator.motion;
   own.driven = actuator.driven;
   own.drive = actuator.drive;
-  const bool turns = actuator.driven == Driven::torque || actuator.driven == Driven::angle;
+  const bool turns = own.turns();
   if (turns != (actuator.motion == Motion::rotation)) {
     reject(path + ".motion", turns ? "translation" : "rotation", "does not fit what drives it",
            "force and displacement translate, torque and angle rotate");
@@ -107,8 +107,7 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
       return b.turns == motion.turns && b.axis == motion.axis;
     });
     const bool driven = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const ActuatorModel& other) {
-      return other.line == own.line && !other.tendon && (other.motion == Motion::rotation) == turns &&
-             other.axis == motion.axis;
+      return other.line == own.line && !other.tendon && other.turns() == turns && other.axis == motion.axis;
     });
     if (driven)
       reject(path, name, "the rod already has an actuator of this motion", "drive each motion of a base once");

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "sinew/sim/building.hpp"
-#include "sinew/sim/effectors.hpp"
 #include "sinew/sim/quantities.hpp"
+#include "sinew/sim/targets.hpp"
 
 namespace sinew::building {
 

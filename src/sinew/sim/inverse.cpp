@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/statics.hpp"
@@ -84,11 +85,11 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
   F_.resize(n, n);
   X_.resize(n, n);
   problem_.B.resize(rows, n);
-  const auto tell_motors = [&](const solve::CoupledSolution& response, Eigen::Ref<Eigen::VectorXd> force,
+  const auto read_motors = [&](const solve::CoupledSolution& response, Eigen::Ref<Eigen::VectorXd> force,
                                Eigen::Ref<Eigen::VectorXd> position) {
     for (Eigen::Index b = 0; b < n; ++b) {
       const int motor = model.sought[static_cast<std::size_t>(b)];
-      const bool told_force = model.actuators[motor].row < 0;
+      const bool told_force = model.actuators[motor].told_force();
       force[b] = told_force ? 0.0 : motor_reaction(model, motor, response);
       position[b] = told_force ? motor_motion(model, iterate, motor, response) : 0.0;
     }
@@ -105,8 +106,8 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
       continue;
     }
     rows_.motion(here, response, false, J_.col(a));
-    tell_motors(response, F_.col(a), X_.col(a));
-    (model.actuators[actuator].row < 0 ? F_ : X_)(a, a) = 1.0;
+    read_motors(response, F_.col(a), X_.col(a));
+    (model.actuators[actuator].told_force() ? F_ : X_)(a, a) = 1.0;
     if (rows > 0) here.contact_motion(response, false, problem_.B.col(a));
   }
   if (rows > 0) {
@@ -125,7 +126,7 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
     forces_ = Eigen::VectorXd::Unit(rows, k);
     const solve::CoupledSolution& response = here.press(forces_);
     rows_.pressed(here, forces_, problem_.contacts.D.col(k), response, L_.col(k));
-    tell_motors(response, F_pressed_.col(k), X_pressed_.col(k));
+    read_motors(response, F_pressed_.col(k), X_pressed_.col(k));
   }
 }
 
@@ -211,9 +212,11 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
     const int actuator = model.sought[static_cast<std::size_t>(a)];
     const ActuatorModel& own = model.actuators[actuator];
     const double told = context.command.actuators[actuator];
-    const double force = own.row < 0 ? told : iterate.lambda[own.row] + motor_reaction(model, actuator, solution);
-    const double position =
-        own.row < 0 ? motor_position(model, iterate, own) + motor_motion(model, iterate, actuator, solution) : told;
+    const double force =
+        motor_force(model, context.command, iterate, actuator) + motor_reaction(model, actuator, solution);
+    const double position = own.told_force()
+                                ? motor_position(model, iterate, own) + motor_motion(model, iterate, actuator, solution)
+                                : told;
     problem_.wish[a] = preferred_[a] - force;
     for (Eigen::Index k = 0; k < kRows; ++k) {
       const Kind& kind = kKinds[static_cast<std::size_t>(k)];
@@ -324,58 +327,6 @@ Aim Inverse::aim(const Model& model, const State& state) {
                 : binding_.empty()  ? Aim::Outcome::nearest
                                     : Aim::Outcome::limited;
   return aim;
-}
-
-std::string describe(const Model& model, const Bound& bound) {
-  const ActuatorModel& own = model.actuators[bound.actuator];
-  const MotorWords words = words_of(own);
-  const std::string force = words.force, place = words.position;
-  const std::string newton = words.force_unit, metre = words.position_unit;
-  const auto say = [&](const std::string& what, double value, const std::string& unit) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.6g", value);
-    return "actuators." + own.name + ": " + what + " " + number + " " + unit;
-  };
-  switch (bound.limit) {
-    case Limit::least_force:
-      return say(force + " at least", own.force.least, newton);
-    case Limit::most_force:
-      return say(force + " at most", own.force.most, newton);
-    case Limit::least_position:
-      return say(place + " at least", own.position.least, metre);
-    case Limit::most_position:
-      return say(place + " at most", own.position.most, metre);
-    case Limit::speed:
-      return say("speed at most", own.speed, metre + "/s");
-    case Limit::force_rate:
-      return say(force + " rate at most", own.force_rate, newton + "/s");
-  }
-  return own.name;
-}
-
-std::string describe(const Model& model, const Aim& aim) {
-  std::string text;
-  const auto list = [&](const char* what, const std::vector<Bound>& bounds) {
-    for (std::size_t i = 0; i < bounds.size(); ++i)
-      text += (i > 0 ? "; " : text.empty() ? what : std::string("; ") + what) + describe(model, bounds[i]);
-  };
-  switch (aim.outcome) {
-    case Aim::Outcome::none:
-      return "";
-    case Aim::Outcome::reached:
-      text = "reached";
-      break;
-    case Aim::Outcome::limited:
-      list("limited by ", aim.binding);
-      break;
-    case Aim::Outcome::nearest:
-      text = "nearest";
-      break;
-  }
-  list("dropped ", aim.dropped);
-  if (aim.apart >= 0)
-    text += "; outputs." + model.outputs[model.effectors[aim.apart].output].name + ": the two are not near each other";
-  return text;
 }
 
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
@@ -530,7 +481,8 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
   for (const int actuator : model.sought) {
     const ActuatorModel& own = model.actuators[actuator];
     const MotorWords words = words_of(own);
-    result.columns.push_back(command_name(own) + " [" + (own.row < 0 ? words.force_unit : words.position_unit) + "]");
+    result.columns.push_back(command_name(own) + " [" + (own.told_force() ? words.force_unit : words.position_unit) +
+                             "]");
   }
   return result;
 }

@@ -4,16 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "sinew/sim/effectors.hpp"
+#include "sinew/sim/effector_rows.hpp"
 #include "sinew/solve/steering.hpp"
 
 namespace sinew {
-
-/// "actuators.pull: force at most 10 N"
-std::string describe(const Model& model, const Bound& bound);
-
-/// "reached", or what keeps the effectors from their goals; empty without targets.
-std::string describe(const Model& model, const Aim& aim);
 
 /// What is looked for at one linearisation: increments p of the sought commands that bring effectors nearest to their
 /// goals within the motors' limits, while contacts answer (solve/steering); where these leave a choice, forces nearest

@@ -6,10 +6,10 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/contacts.hpp"
-#include "sinew/sim/effectors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/solid_matrix.hpp"
+#include "sinew/sim/targets.hpp"
 
 namespace sinew {
 
@@ -115,7 +115,7 @@ void number_unknowns(Model& model) {
       model.rubbing.push_back(static_cast<int>(&point - model.points.data()));
   }
   for (ActuatorModel& actuator : model.actuators) {
-    const bool turns = actuator.motion == Motion::rotation;
+    const bool turns = actuator.turns();
     if (actuator.line.cable >= 0) {
       actuator.unknown = model.cables[actuator.line.cable].unknown;
     } else if (!actuator.tendon) {
@@ -127,7 +127,7 @@ void number_unknowns(Model& model) {
       actuator.unknown = rod.unknown + static_cast<int>(at - base.begin());
       if (turns) rod.floats = false;  // what drives it counts from the start
     }
-    if (actuator.driven == Driven::displacement || actuator.driven == Driven::angle) actuator.row = model.rows++;
+    if (!actuator.told_force()) actuator.row = model.rows++;
   }
   number_ties(model);
   model.arms.setOnes(model.unknowns);

@@ -177,19 +177,19 @@ struct TieModel {
 struct ActuatorModel {
   std::string name;
   Line line;
-  Motion motion = Motion::translation;
   Driven driven = Driven::displacement;
   Drive drive;
   std::optional<rod::Tendon> tendon;     ///< pulled instead of the base
   double tendon_length = 0.0;            ///< [m] at t = 0
   int axis = -1;                         ///< of its base's motion
   int unknown = -1;                      ///< of its base coordinate in z
-  int row = -1;                          ///< if driven by displacement or angle
+  int row = -1;                          ///< if told a position: holds it there
   Span force, position;                  ///< [N], [m], [N m], [rad] what it can do
   double speed = 0.0, force_rate = 0.0;  ///< how fast, each may be infinite
   double preferred = 0.0;                ///< [N] or [N m] where targets leave a choice
   bool sought() const { return std::holds_alternative<Sought>(drive); }
-  bool turns() const { return motion == Motion::rotation; }
+  bool turns() const { return driven == Driven::torque || driven == Driven::angle; }
+  bool told_force() const { return driven == Driven::force || driven == Driven::torque; }  ///< or a position
 };
 
 /// Forces on material points of a rod.

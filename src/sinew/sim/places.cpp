@@ -55,40 +55,8 @@ int count_folded(const Model& model, const State& state) {
   return static_cast<int>(count);
 }
 
-double motor_position(const Model& model, const State& state, const ActuatorModel& actuator) {
-  const Line& line = actuator.line;
-  if (actuator.tendon) {
-    return actuator.tendon_length -
-           rod::tendon_length(model.rods[line.rod].rod, *actuator.tendon, state.rods[line.rod].q).value;
-  }
-  if (line.rod >= 0) return state.rods[line.rod].q[actuator.unknown - model.rods[line.rod].unknown];
-  return state.cables[line.cable].z[actuator.unknown - model.cables[line.cable].unknown];
-}
-
-std::vector<double> motor_positions(const Model& model, const State& state) {
-  std::vector<double> positions;
-  for (const ActuatorModel& actuator : model.actuators) positions.push_back(motor_position(model, state, actuator));
-  return positions;
-}
-
 Vec3 output_turn(const Model& model, const State& state, const OutputModel& output) {
   return lie::log(output_axes(model, state, output) * output.upright.transpose());
-}
-
-double told_to(const Model& model, const State& state, int actuator) {
-  const ActuatorModel& own = model.actuators[actuator];
-  return own.row < 0 ? state.actuators[actuator] : motor_position(model, state, own);
-}
-
-const Span& told_span(const ActuatorModel& actuator) { return actuator.row < 0 ? actuator.force : actuator.position; }
-
-MotorWords words_of(const ActuatorModel& actuator) {
-  return actuator.turns() ? MotorWords{"torque", "angle", "N m", "rad"} : MotorWords{"force", "displacement", "N", "m"};
-}
-
-std::string command_name(const ActuatorModel& actuator) {
-  const MotorWords words = words_of(actuator);
-  return actuator.name + "." + (actuator.row < 0 ? words.force : words.position);
 }
 
 }  // namespace sinew

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "sinew/rod/kinematics.hpp"
@@ -41,23 +40,5 @@ Pressing pressing_of(const State& state, int pair);
 
 /// How many cells of solids are flat or inside out.
 int count_folded(const Model& model, const State& state);
-
-/// How far a motor has moved its base, or drawn its tendon [m] or [rad]; and all of them.
-double motor_position(const Model& model, const State& state, const ActuatorModel& actuator);
-std::vector<double> motor_positions(const Model& model, const State& state);
-
-/// What a motor obeys: its force where that is told, else where it is.
-double told_to(const Model& model, const State& state, int actuator);
-/// What it can do of that.
-const Span& told_span(const ActuatorModel& actuator);
-
-/// How people speak of what a motor does: "pull" has `force` [N] and `displacement` [m], what turns a torque and an
-/// angle.
-struct MotorWords {
-  const char *force, *position, *force_unit, *position_unit;
-};
-MotorWords words_of(const ActuatorModel& actuator);
-/// "pull.force": what it is told, as signals call it.
-std::string command_name(const ActuatorModel& actuator);
 
 }  // namespace sinew

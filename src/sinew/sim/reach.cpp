@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/error/input_error.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/statics.hpp"
 
@@ -57,7 +58,7 @@ std::vector<std::vector<double>> spread_commands(const Model& model, int count) 
     const ActuatorModel& own = model.actuators[sought];
     spans.push_back(told_span(own));
     const MotorWords words = words_of(own);
-    const char* const what = own.row < 0 ? words.force : words.position;
+    const char* const what = own.told_force() ? words.force : words.position;
     if (!std::isfinite(spans.back().least) || !std::isfinite(spans.back().most))
       throw InputError(
           {"", 0, "actuators." + own.name + ".limits", "", std::string("say nothing of its least or most ") + what,

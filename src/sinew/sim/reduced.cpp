@@ -5,6 +5,7 @@
 
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/lie/rotation.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
 
@@ -79,14 +80,13 @@ void add_cable(const StepContext& context, const State& iterate, int number, Red
 void add_actuator(const StepContext& context, const State& iterate, std::size_t number, Reduced& reduced) {
   const ActuatorModel& actuator = context.model.actuators[number];
   if (actuator.tendon) return;  // with its rod
-  const double arm = actuator.motion == Motion::rotation ? context.model.rods[actuator.line.rod].rod.length() : 1.0;
+  const double arm = actuator.turns() ? context.model.rods[actuator.line.rod].rod.length() : 1.0;
   solve::CoupledProblem& problem = reduced.problem;
-  const double target = context.command.actuators[number];
-  const double force = actuator.row < 0 ? target : iterate.lambda[actuator.row];
+  const double force = motor_force(context.model, context.command, iterate, static_cast<int>(number));
   problem.r[actuator.unknown] -= force;
   reduced.scale = std::max(reduced.scale, std::abs(force) / arm);
-  if (actuator.row < 0) return;
-  const double off = motor_position(context.model, iterate, actuator) - target;
+  if (actuator.told_force()) return;
+  const double off = motor_position(context.model, iterate, actuator) - context.command.actuators[number];
   problem.G.add(actuator.row, actuator.unknown, -1.0);
   problem.c[actuator.row] = off;
   reduced.violation = std::max(reduced.violation, std::abs(off) * arm);
@@ -241,37 +241,6 @@ void clear(const Model& model, solve::RightSide& side) {
   side.c.setZero(model.rows);
   side.chains.resize(model.rods.size());
   for (std::size_t n = 0; n < model.rods.size(); ++n) side.chains[n].setZero(model.rods[n].rod.strain_coordinates());
-}
-
-namespace {
-
-Eigen::VectorXd tendon_gradient(const Model& model, const State& iterate, const ActuatorModel& actuator) {
-  const int rod = actuator.line.rod;
-  return rod::tendon_length(model.rods[rod].rod, *actuator.tendon, iterate.rods[rod].q).gradient;
-}
-
-}  // namespace
-
-void tell_motor(const Model& model, const State& iterate, int actuator, double more, solve::RightSide& side) {
-  const ActuatorModel& own = model.actuators[actuator];
-  if (own.row >= 0) {
-    side.c[own.row] -= more;  // position - target
-  } else if (own.tendon) {
-    side.chains[own.line.rod] += more * tendon_gradient(model, iterate, own);
-  } else {
-    side.r[own.unknown] -= more;
-  }
-}
-
-double motor_motion(const Model& model, const State& iterate, int actuator, const solve::CoupledSolution& solution) {
-  const ActuatorModel& own = model.actuators[actuator];
-  if (own.tendon) return -tendon_gradient(model, iterate, own).dot(solution.dq[own.line.rod]);
-  return solution.dz[own.unknown];
-}
-
-double motor_reaction(const Model& model, int actuator, const solve::CoupledSolution& solution) {
-  const int row = model.actuators[actuator].row;
-  return row < 0 ? 0.0 : solution.dlambda[row];
 }
 
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,

@@ -42,13 +42,6 @@ void hold_followed(const Model& model, const State& iterate, int row, int unknow
 /// Zeros for every reduced unknown, row and strain, in the memory of an earlier one.
 void clear(const Model& model, solve::RightSide& side);
 
-/// What one more newton, metre or radian of a motor's command adds to a right side: it is told a force or, with a row,
-/// a place.
-void tell_motor(const Model& model, const State& iterate, int actuator, double more, solve::RightSide& side);
-/// How far a solution moves a motor, and how much its force changes while its command stays [SI].
-double motor_motion(const Model& model, const State& iterate, int actuator, const solve::CoupledSolution& solution);
-double motor_reaction(const Model& model, int actuator, const solve::CoupledSolution& solution);
-
 /// Moves every reduced unknown and multiplier of an iterate by `fraction` of a solution.
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate);

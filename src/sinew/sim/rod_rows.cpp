@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sinew/sim/motors.hpp"
+
 namespace sinew {
 
 namespace {
@@ -104,7 +106,7 @@ void RodRows::add_tendons(solve::ChainPart& part) {
     const ActuatorModel& actuator = context_.model.actuators[i];
     if (actuator.line.rod != number_ || !actuator.tendon) continue;
     const rod::TendonLength length = rod::tendon_length(rod, *actuator.tendon, q);
-    const double tension = actuator.row < 0 ? context_.command.actuators[i] : iterate_.lambda[actuator.row];
+    const double tension = motor_force(context_.model, context_.command, iterate_, static_cast<int>(i));
     equations.r.tail(rod.strain_coordinates()) += tension * length.gradient;
     equations.chain.D += tension * length.hessian;
     for (rod::Balance& at : equations.internal) {
@@ -116,7 +118,7 @@ void RodRows::add_tendons(solve::ChainPart& part) {
       if (at.s > actuator.tendon->from) at.before -= wrench(at.s > rod.sections[section].begin ? section : section - 1);
     }
     reduced_.scale = std::max(reduced_.scale, std::abs(tension));
-    if (actuator.row < 0) continue;
+    if (actuator.told_force()) continue;
     const double off = actuator.tendon_length - context_.command.actuators[i] - length.value;
     problem().c[actuator.row] = off;
     reduced_.violation = std::max(reduced_.violation, std::abs(off));

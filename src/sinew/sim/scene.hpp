@@ -366,7 +366,7 @@ struct Target {
   std::variant<Track, External> at;   ///< [m], [rad], [1/m] or 1, normal force [N]
   Strain strain = Strain::bending_y;  ///< of an output of strain: which one
   std::vector<double> weights;        ///< of each component [-] >= 0; empty: 1. With 0 it may be anything
-  std::optional<double> tolerance;    ///< reached if no further off; none: see sim/effectors.hpp
+  std::optional<double> tolerance;    ///< reached if no further off; none: see sim/targets.hpp
 };
 
 /// Shapes of rigid bodies and obstacles, in their own axes with the middle at the origin.

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "sinew/constraint/sliding.hpp"
-#include "sinew/sim/effectors.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/solid_loads.hpp"
+#include "sinew/sim/targets.hpp"
 
 namespace sinew {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sinew/sim/clock.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/step_ends.hpp"

@@ -7,6 +7,7 @@
 
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/sim/internal.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
 #include "sinew/sim/solid_loads.hpp"
@@ -126,8 +127,8 @@ double work(const StepContext& context, const State& next) {
   const bool first = context.start.time == 0.0 && whole;
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const ActuatorModel& actuator = model.actuators[i];
-    const bool driven = actuator.row < 0;
-    const double force = first && driven ? told_at(actuator.drive, context.start.time) : context.start.actuators[i];
+    const double force =
+        first && actuator.told_force() ? told_at(actuator.drive, context.start.time) : context.start.actuators[i];
     const double moved = motor_position(model, next, actuator) - motor_position(model, context.start, actuator);
     sum += 0.5 * (force + next.actuators[i]) * moved;
   }
@@ -160,10 +161,8 @@ void finish(const StepContext& context, State& next, rod::Configuration& shape) 
   }
   for (std::size_t i = 0; i < next.bodies.size(); ++i)
     rigid::set_velocities(context.start.bodies[i], context.rate, next.bodies[i]);
-  for (std::size_t i = 0; i < next.actuators.size(); ++i) {
-    const int row = model.actuators[i].row;
-    next.actuators[i] = row < 0 ? context.command.actuators[i] : next.lambda[row];
-  }
+  for (std::size_t i = 0; i < next.actuators.size(); ++i)
+    next.actuators[i] = motor_force(model, context.command, next, static_cast<int>(i));
   next.loads = context.command.loads;
   next.energies.work += work(context, next);
   for (std::size_t i = 0; i < next.rods.size(); ++i) {

@@ -1,9 +1,8 @@
-#include "sinew/sim/effectors.hpp"
+#include "sinew/sim/effector_rows.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "sinew/lie/rotation.hpp"
 #include "sinew/sim/places.hpp"
@@ -12,105 +11,10 @@ namespace sinew {
 
 namespace {
 
-const OutputModel& output_of(const Model& model, const EffectorModel& own) { return model.outputs[own.output]; }
-
-/// [N/m] what is still apart lacks.
-constexpr double kPerGap = 100.0;
-
-rod::Mat3 turned_to(const Vec3& turn, const OutputModel& output) { return lie::exp(turn) * output.upright; }
-
 /// Rotation vectors change by this with the turn omega of what they tell: d exp(f) exp(f)^-1 = [V(f) df]x.
 rod::Mat3 of_turn(const Vec3& f) { return lie::RotationMap::tangent(f).matrix().inverse(); }
 
 }  // namespace
-
-Measure measure_of(const Model& model, const EffectorModel& effector) {
-  switch (output_of(model, effector).quantity) {
-    case Quantity::orientation:
-      return {std::numbers::pi / 180.0, "deg", std::numbers::pi / 180.0, "rad"};
-    case Quantity::strain:
-      return effector.strain < 3 ? Measure{1.0, "1/m", 1.0, "1/m"} : Measure{0.01, "%", 0.01, "1"};
-    case Quantity::touching:
-      return {0.1, "N", 1.0, "N"};
-    default:
-      return {};
-  }
-}
-
-std::vector<Column> effector_columns(const Model& model, const EffectorModel& effector) {
-  const OutputModel& output = output_of(model, effector);
-  const std::string name = output.name + ".", unit = measure_of(model, effector).si;
-  if (output.quantity == Quantity::touching) return {{name + "normal", unit}};
-  if (output.quantity == Quantity::strain)
-    return {{name + rod::kStrainNames[static_cast<std::size_t>(effector.strain)], unit}};
-  return {{name + "x", unit}, {name + "y", unit}, {name + "z", unit}};
-}
-
-int effector_size(const Model& model) {
-  return model.effectors.empty() ? 0 : model.effectors.back().first + model.effectors.back().size;
-}
-
-Eigen::VectorXd effector_value(const Model& model, const State& state, const EffectorModel& effector) {
-  const OutputModel& output = output_of(model, effector);
-  if (output.quantity == Quantity::orientation) return output_turn(model, state, output);
-  if (output.quantity == Quantity::strain)
-    return Eigen::VectorXd::Constant(
-        1, rod::strain(model.rods[output.rod].rod, state.rods[output.rod].q, output.abscissa)[effector.strain]);
-  if (output.pair >= 0) return Eigen::VectorXd::Constant(1, pressing_of(state, output.pair).force);
-  return output_position(model, state, output);
-}
-
-void goal_at(const Model& model, double time, Goal& goal) {
-  goal.at.resize(effector_size(model));
-  for (std::size_t k = 0; k < model.effectors.size(); ++k) {
-    const EffectorModel& own = model.effectors[k];
-    const Track* track = std::get_if<Track>(&model.scene.targets[k].at);
-    goal.at.segment(own.first, own.size) = track ? value_at(*track, time) : own.start;
-  }
-}
-
-Goal goal_at(const Model& model, double time) {
-  Goal goal;
-  goal_at(model, time, goal);
-  return goal;
-}
-
-void effector_errors(const Model& model, const State& state, const Goal& goal, Eigen::VectorXd& errors) {
-  errors.resize(effector_size(model));
-  for (const EffectorModel& own : model.effectors) {
-    const OutputModel& output = output_of(model, own);
-    const auto wanted = goal.at.segment(own.first, own.size);
-    if (output.quantity == Quantity::orientation) {
-      const rod::Mat3 aim = turned_to(wanted, output);
-      errors.segment<3>(own.first) = lie::log(output_axes(model, state, output) * aim.transpose());
-    } else if (output.pair >= 0) {
-      const Pressing now = pressing_of(state, output.pair);
-      const bool apart = now.force == 0.0 && wanted[0] > 0.0 && std::isfinite(now.gap);
-      errors[own.first] = now.force - wanted[0] - (apart ? kPerGap * std::max(0.0, now.gap) : 0.0);
-    } else if (own.size == 3) {
-      errors.segment<3>(own.first) = output_position(model, state, output) - wanted;
-    } else {
-      errors.segment(own.first, own.size) = effector_value(model, state, own) - wanted;
-    }
-  }
-}
-
-double error_of(const EffectorModel& own, const Eigen::VectorXd& errors) {
-  double sum = 0.0;
-  for (int i = 0; i < own.size; ++i) {
-    if (own.weights[i] > 0.0) sum += errors[own.first + i] * errors[own.first + i];
-  }
-  return std::sqrt(sum);
-}
-
-double farthest(const Model& model, const Eigen::VectorXd& errors) {
-  double most = 0.0;
-  for (const EffectorModel& own : model.effectors) {
-    const double off = error_of(own, errors) / own.tolerance;
-    most = off <= most ? most : off;  // (NaN stays)
-  }
-  return most;
-}
 
 void EffectorRows::look(const StepContext& context, const State& iterate, Linearization& here, const Goal& goal,
                         const Eigen::VectorXd& errors) {
@@ -120,7 +24,7 @@ void EffectorRows::look(const StepContext& context, const State& iterate, Linear
   points_.resize(static_cast<Eigen::Index>(3 * model.watched.size()));
   for (std::size_t k = 0; k < own_.size(); ++k) {
     const EffectorModel& effector = model.effectors[k];
-    const OutputModel& output = output_of(model, effector);
+    const OutputModel& output = model.outputs[effector.output];
     Own& own = own_[k];
     own.first = effector.first;
     own.watched = effector.watched;
