@@ -27,7 +27,8 @@ TEST(Quantities, stand_once_each_with_a_word_and_units) {
   }
   for (const auto& [word, quantity] : quantity_words()) {
     bool known = false;
-    for (const Subject subject : {Subject::solid, Subject::rod, Subject::body}) known |= find_kind(quantity, subject) != nullptr;
+    for (const Subject subject : {Subject::solid, Subject::rod, Subject::body})
+      known |= find_kind(quantity, subject) != nullptr;
     EXPECT_TRUE(known) << word;
   }
 }
