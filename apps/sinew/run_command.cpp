@@ -192,7 +192,7 @@ void add_commands(const std::filesystem::path& table, const io::SceneFile& file,
     if (std::holds_alternative<Sought>(actuator.drive) && std::none_of(columns.begin(), columns.end(), of_it))
       throw InputError({table.string(), 1, "", "",
                         "has no column for actuators." + name + ", which the scene leaves open",
-                        "add a column such as " + name + ".force"});
+                        "add a column such as " + name + ".force or " + name + ".displacement"});
   }
   for (const std::string& column : columns) {
     if (column == "time") continue;

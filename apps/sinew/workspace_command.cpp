@@ -13,7 +13,6 @@
 #include "sinew/loaded_scene.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/sim/motors.hpp"
-#include "sinew/sim/places.hpp"
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"

@@ -349,6 +349,7 @@ TEST_F(PaperInverse, ThousandTargetsInMotionKeepTheLimits) {
       ASSERT_TRUE(finite(state)) << trial;
       ++outcomes[static_cast<int>(report.aim.outcome)];
       const std::vector<double> after = motor_positions(model, state);
+      EXPECT_TRUE(report.aim.broken.empty()) << trial;
       if (!report.aim.dropped.empty()) continue;
       for (std::size_t a = 0; a < 4; ++a) {
         // Told or not.

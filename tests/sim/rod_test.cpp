@@ -7,7 +7,6 @@
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/rod/section.hpp"
 #include "sinew/sim/internal.hpp"
-#include "sinew/sim/motors.hpp"
 #include "support/scenes.hpp"
 #include "validation/rods.hpp"
 

@@ -35,6 +35,7 @@ class Random {
     own.lower.setConstant(n, -2.0);
     own.upper.setConstant(n, 2.0);
     own.firmness.setOnes(n);
+    own.unit.setOnes(n);
     own.wish.setZero(n);
     own.B = W.block(n, 0, k, n);
     own.contacts.D = W.block(n, n, k, k);
@@ -137,6 +138,7 @@ TEST(Steering, PressesWhatItTouches) {
   problem.lower.setConstant(1, -INFINITY);
   problem.upper.setConstant(1, INFINITY);
   problem.firmness.setOnes(1);
+  problem.unit.setOnes(1);
   problem.wish.setZero(1);
   problem.contacts = {Eigen::Matrix3d::Identity(), Eigen::Vector3d(2.0, 0.0, 0.0), Eigen::VectorXd::Zero(1)};
   problem.B.setZero(3, 1);
@@ -158,6 +160,7 @@ TEST(Steering, BreaksTheLessFirm) {
   problem.lower = Eigen::Vector2d(2.0, -1.0);
   problem.upper = Eigen::Vector2d(9.0, 1.0);
   problem.firmness = Eigen::Vector2d(1.0, 1e4);
+  problem.unit.setOnes(2);
   problem.wish.setZero(1);
   Steering steering;
   ASSERT_TRUE(steering.solve(problem));

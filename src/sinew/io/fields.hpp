@@ -12,6 +12,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -292,7 +293,9 @@ std::vector<std::string> texts_of(const Words<E>& words) {
 template <class E>
 int number_of(const Words<E>& words, E value) {
   const auto same = [value](const auto& own) { return own.second == value; };
-  return static_cast<int>(std::find_if(words.begin(), words.end(), same) - words.begin());
+  const auto found = std::find_if(words.begin(), words.end(), same);
+  if (found == words.end()) throw std::logic_error("a value that no word of a scene file means");
+  return static_cast<int>(found - words.begin());
 }
 
 /// One of a few words, by its number.

@@ -64,7 +64,7 @@ Samples from_file(const At& at, std::size_t components) {
   std::vector<std::string> columns = {table.time};
   columns.insert(columns.end(), table.columns.begin(), table.columns.end());
   const std::filesystem::path path = at.use(table.file);
-  if (!std::filesystem::exists(path))
+  if (std::error_code unknown; !std::filesystem::exists(path, unknown))
     at.child("file").refuse("does not exist as " + path.string(), "paths are relative to the folder of the scene");
   auto values = read_csv(path, columns);
   Samples own{std::move(values[0]),

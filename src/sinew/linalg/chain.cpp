@@ -59,6 +59,7 @@ double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, E
     auto own = y.segment(at, m);
     see(own);
     own.noalias() += chain.twists(k).transpose().lazyProduct(wrench);
+    see(own);
     wrench.noalias() += chain.wrenches(k).lazyProduct(x.segment(at, m));
   }
   return largest;

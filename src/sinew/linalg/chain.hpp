@@ -47,8 +47,8 @@ void make_chain(const std::vector<int>& first, bool symmetric, Chain& chain);
 /// The matrix written out, for tests and for the solver of last resort.
 Eigen::MatrixXd dense(const Chain& chain);
 
-/// y = A x + U^T tau: what all links answer to x when the base moves by the twist tau. Returns the largest of what adds
-/// up to y, beside which rounding in y has to be seen.
+/// y = A x + U^T tau: what all links answer to x when the base moves by the twist tau. Returns the largest number
+/// on the way to y, beside which rounding in y has to be seen.
 double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y);
 
 /// What couples one outside unknown to a chain: for every link nearer to the base than `link` the wrench `g`, as

@@ -3,7 +3,6 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/motors.hpp"
-#include "sinew/sim/places.hpp"
 
 namespace sinew::building {
 
@@ -40,7 +39,11 @@ void set_limits(Model& model, const Actuator& actuator, const std::string& path,
   // A cable that would have to push goes slack instead.
   const bool pulls = actuator.tendon || (!turns && !actuator.axis);
   own.force = limits.force.value_or(Span{pulls ? 0.0 : -INFINITY, INFINITY});
-  if (pulls && std::isinf(own.force.least)) own.force.least = 0.0;  // only the most was given
+  if (pulls && own.force.least == -INFINITY) {  // only the most was given
+    if (own.force.most < 0.0)
+      reject(path + ".limits.force", text(own.force.most) + " N", "a cable cannot push", "give a most above 0");
+    own.force.least = 0.0;
+  }
   own.position = limits.displacement;
   const MotorWords words = words_of(own);
   check_span(own.force, path + ".limits." + words.force, words.force_unit);
@@ -57,9 +60,10 @@ void set_limits(Model& model, const Actuator& actuator, const std::string& path,
            "is outside the limits of the " + std::string(words.force), "prefer what the motor can do");
   const bool limited = limits.force || limits.speed || limits.force_rate || std::isfinite(own.position.least) ||
                        std::isfinite(own.position.most) || actuator.preferred;
-  if (limited && !std::holds_alternative<Sought>(actuator.drive))
-    model.warnings.push_back(path + ": limits and what is preferred are for motors that are sought (`" + words.force +
-                             ": inverse`); this one does what it is told");
+  if (limited && !model.scene.targets.empty() && !std::holds_alternative<Sought>(actuator.drive))
+    model.warnings.push_back(path +
+                             ": limits and what is preferred are for motors that are `inverse`; this one does "
+                             "what it is told");
   own.preferred = actuator.preferred.value_or(std::clamp(0.0, own.force.least, own.force.most));
 }
 

@@ -180,9 +180,10 @@ void warn_of_units(Model& model) {
     const Track* const track = std::get_if<Track>(&model.scene.targets[i].at);
     if (!track) continue;
     double farthest = 0.0, most = 0.0;  // from where it starts; of a turn
+    const Eigen::ArrayXd counts = (model.effectors[i].weights.array() > 0.0).cast<double>();
     for (const Eigen::VectorXd& value : track->values) {
-      farthest = std::max(farthest, (value - model.effectors[i].start).norm());
-      most = std::max(most, value.norm());
+      farthest = std::max(farthest, (counts * (value - model.effectors[i].start).array()).matrix().norm());
+      most = std::max(most, (counts * value.array()).matrix().norm());
     }
     const std::string path = "targets." + output.name + ".at";
     if (output.quantity == Quantity::position && farthest > 10.0 * model.size)

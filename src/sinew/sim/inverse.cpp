@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -21,8 +20,10 @@ namespace {
 
 /// [mm, deg, ...] increments that move effectors no more than this end a search; goals are then met to about that.
 constexpr double kSettled = 1e-5;
-/// Further beyond a limit than this part of it, it counts as broken.
-constexpr double kBroken = 1e-4;
+/// Further beyond a limit than this part of its unit, it counts as broken; what is less than rounding costs nothing.
+constexpr double kBroken = 1e-4, kRounding = 1e-9;
+/// [N] or [N m] forces of motors are not told in less than this.
+constexpr double kLeastForce = 1e-4;
 /// [mm, deg, ...] that being beyond a limit costs at least, for what moves effectors by as much.
 constexpr double kLeastPenalty = 1e-2;
 
@@ -170,22 +171,39 @@ Span Inverse::span_of(const ActuatorModel& motor, Eigen::Index row) const {
 void Inverse::weigh_limits() {
   for (Eigen::Index row = 0; row < penalty_.size(); ++row) {
     const Eigen::Index a = row % J_.cols();
-    const double least = kLeastPenalty * lengths_[a] / std::max(std::abs(problem_.A(row, a)), 1e-300);
-    const double pull = 2.0 * std::abs(steering_.pulls()[row]);
-    penalty_[row] = std::max({penalty_[row], pull, std::isfinite(least) ? least : 0.0});
+    const double own = std::abs(problem_.A(row, a)), pull = 2.0 * std::abs(steering_.pulls()[row]);
+    const double least = own > kRounding * problem_.unit[row] ? kLeastPenalty * lengths_[a] / own : 0.0;
+    penalty_[row] = std::max({penalty_[row], pull, least});
   }
+}
+
+double Inverse::value_of(const Model& model, const State& state, Eigen::Index row) const {
+  const int actuator = model.sought[static_cast<std::size_t>(row % J_.cols())];
+  return kKinds[static_cast<std::size_t>(row / J_.cols())].of_force
+             ? state.actuators[actuator]
+             : motor_position(model, state, model.actuators[actuator]);
+}
+
+double Inverse::unit_of(const Model& model, Eigen::Index row) const {
+  const ActuatorModel& motor = model.actuators[model.sought[static_cast<std::size_t>(row % J_.cols())]];
+  const Kind& kind = kKinds[static_cast<std::size_t>(row / J_.cols())];
+  if (kind.of_rate) {
+    const double most = (kind.of_force ? motor.force_rate : motor.speed) * h_;
+    return most > 0.0 && std::isfinite(most) ? most : 1.0;  // (without one it is never broken)
+  }
+  const Span& span = kind.of_force ? motor.force : motor.position;
+  double unit = kind.of_force ? kLeastForce : motor.turns() ? 1.0 : model.size;
+  for (const double end : {span.least, span.most}) unit = std::max(unit, std::isfinite(end) ? std::abs(end) : 0.0);
+  return unit;
 }
 
 double Inverse::cost(const Model& model, const State& state) {
   effector_errors(model, state, goal_, error_);
   double sum = 0.5 * weights_.cwiseProduct(error_).squaredNorm();
   for (Eigen::Index row = 0; row < penalty_.size(); ++row) {
-    if (penalty_[row] == 0.0) continue;
-    const int actuator = model.sought[static_cast<std::size_t>(row % J_.cols())];
-    const ActuatorModel& own = model.actuators[actuator];
-    const double value = kKinds[static_cast<std::size_t>(row / J_.cols())].of_force ? state.actuators[actuator]
-                                                                                    : motor_position(model, state, own);
-    sum += penalty_[row] * span_of(own, row).beyond(value);
+    const ActuatorModel& own = model.actuators[model.sought[static_cast<std::size_t>(row % J_.cols())]];
+    const double beyond = span_of(own, row).beyond(value_of(model, state, row));
+    if (beyond > kRounding * unit_of(model, row)) sum += penalty_[row] * beyond;
   }
   return sum;
 }
@@ -205,6 +223,7 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
   problem_.lower.resize(problem_.A.rows());
   problem_.upper.resize(problem_.A.rows());
   problem_.firmness.setConstant(problem_.A.rows(), INFINITY);
+  problem_.unit.setOnes(problem_.A.rows());
   problem_.wish.resize(n);
   lengths_.resize(n);
   bounds_.resize(static_cast<std::size_t>(2 * kRows * n));
@@ -228,6 +247,7 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
       problem_.lower[row] = span.least - now;
       problem_.upper[row] = span.most - now;
       problem_.firmness[row] = kind.of_rate ? 1.0 : 0.0;
+      problem_.unit[row] = unit_of(model, row);
       bounds_[static_cast<std::size_t>(2 * row)] = {actuator, kind.least};
       bounds_[static_cast<std::size_t>(2 * row + 1)] = {actuator, kind.most};
     }
@@ -301,21 +321,15 @@ Aim Inverse::aim(const Model& model, const State& state) {
   aim.binding = binding_;
   aim.dropped = dropped_;
   aim.certain = steering_.certain();
-  // And what is not kept although nothing excludes it: motors that hold each other.
   for (Eigen::Index row = 0; row < kRows * J_.cols(); ++row) {
     const int actuator = model.sought[static_cast<std::size_t>(row % J_.cols())];
     const Kind& kind = kKinds[static_cast<std::size_t>(row / J_.cols())];
     const Span span = span_of(model.actuators[actuator], row);
-    const double value =
-        kind.of_force ? state.actuators[actuator] : motor_position(model, state, model.actuators[actuator]);
-    const bool below = value < span.least;
-    const double limit = below ? span.least : span.most;
-    if (!(span.beyond(value) > kBroken * std::max(std::abs(limit), std::abs(value)))) continue;
-    const Bound bound{actuator, below ? kind.least : kind.most};
-    const auto same = [&](const Bound& other) {
-      return other.actuator == bound.actuator && other.limit == bound.limit;
-    };
-    if (std::none_of(aim.dropped.begin(), aim.dropped.end(), same)) aim.dropped.push_back(bound);
+    const double value = value_of(model, state, row);
+    if (!(span.beyond(value) > kBroken * unit_of(model, row))) continue;
+    const Bound bound{actuator, value < span.least ? kind.least : kind.most};
+    const auto same = [&](const Bound& own) { return own.actuator == bound.actuator && own.limit == bound.limit; };
+    if (std::none_of(aim.dropped.begin(), aim.dropped.end(), same)) aim.broken.push_back(bound);
   }
   for (std::size_t k = 0; k < model.effectors.size(); ++k) {
     const EffectorModel& own = model.effectors[k];
@@ -416,7 +430,7 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
     const double found = accepted(trial.report.status) ? inverse.cost(model, trial.next) : INFINITY;
     const bool better = found < cost - 1e-4 * std::abs(promised) || found < kMet;
     const double moved = inverse.moved();
-    // Where there is no equilibrium any more, none is looked for again.
+    // Where there is no equilibrium any more, steps of that length are not tried again.
     if (!accepted(trial.report.status)) farthest = 0.5 * moved;
     if (better) {
       if (cost - found > 0.75 * promised) reach = std::min(std::max(reach, 2.0 * moved), farthest);

@@ -48,7 +48,10 @@ class Inverse {
   Eigen::MatrixXd position_change() const { return X_ + X_pressed_ * S_; }
 
  private:
+  /// Of a row of limits: between what, what of the motor, and in what it is told.
   Span span_of(const ActuatorModel& motor, Eigen::Index row) const;
+  double value_of(const Model& model, const State& state, Eigen::Index row) const;
+  double unit_of(const Model& model, Eigen::Index row) const;
   void set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution);
 
   Goal goal_;

@@ -1,6 +1,5 @@
 #include "sinew/sim/quantities.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

@@ -19,7 +19,7 @@ struct SignalGroup {
 ///   mode.frequency [Hz], of a modal analysis only, negative where the equilibrium is unstable;
 ///   <output>.<column>, as sim/quantities.hpp lists them;
 ///   <output>.target.x|y|z or .target, where the target of an output is, and .error, how far off that is, in the
-///   components that matter [m], [rad], [1/m] or 1;
+///   components that matter [m], [rad], [1/m], 1 or [N];
 ///   <actuator>.displacement [m] and .force [N], or .angle [rad] and .torque [N m];
 ///   energy.kinetic|elastic|weight|work|dissipated [J]: weight is that of the gravitational field, 0 at the start; work
 ///   is done by motors, loads and moving supports of solids, dissipated is what is missing in the balance: damping of

@@ -85,6 +85,7 @@ struct Aim {
   double farthest = 0.0;       ///< [-] largest error of a target over its tolerance
   std::vector<Bound> binding;  ///< limits that are in the way
   std::vector<Bound> dropped;  ///< limits that others exclude, and that are broken as little as can be
+  std::vector<Bound> broken;   ///< limits that are not kept although nothing excludes them: motors that hold each other
   /// No other commands within the limits would have done better in the last linearisation. Not known with friction, or
   /// more than a dozen contacts: none around it would have.
   bool certain = false;

@@ -154,6 +154,7 @@ std::string describe(const Model& model, const Aim& aim) {
       break;
   }
   list("dropped ", aim.dropped);
+  list("not kept ", aim.broken);
   if (aim.apart >= 0)
     text += "; outputs." + model.outputs[model.effectors[aim.apart].output].name + ": the two are not near each other";
   return text;

@@ -8,7 +8,7 @@ namespace sinew::solve {
 namespace {
 
 /// A limit that others exclude by no more than this part of what it is about does not contradict them.
-constexpr double kMet = 1e-10;
+constexpr double kMet = 1e-9;
 
 }  // namespace
 
@@ -102,7 +102,12 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
   const double size = std::sqrt(std::abs(g.dot(x)));  // |L^T x|: how far the unbounded least is, in the same units
   const int limit = 100 + 20 * (rows + static_cast<int>(x.size()));
 
-  bool settled = false;
+  // What is left of a limit that the others decide.
+  const auto room = [&](int row, double bound, const Eigen::VectorXd& at) {
+    return kMet * (rows_.col(row).cwiseAbs().dot(at.cwiseAbs()) + std::abs(bound));
+  };
+
+  bool settled = false, polished = false;
   while (true) {
     values_.noalias() = rows_.transpose().lazyProduct(x);
     Limit next{-1};
@@ -124,7 +129,15 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
       next = {i, below > above ? 1.0 : -1.0, equal, 0.0};
     }
     if (next.row < 0) {
-      if (settled) break;
+      if (settled) {
+        for (int i = 0; i < rows; ++i) {
+          if (!met_[static_cast<std::size_t>(i)]) continue;
+          if (lower[i] - values_[i] <= room(i, lower[i], x) && values_[i] - upper[i] <= room(i, upper[i], x)) continue;
+          conflict_ = {i};
+          return Outcome::infeasible;
+        }
+        break;
+      }
       settle(H, g, lower, upper, x);
       settled = true;
       continue;
@@ -148,8 +161,14 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
       const double out = bound - normal_.dot(x), gain = normal_.dot(along_);
       const double primal = gain > 0.0 ? std::max(0.0, out / gain) : INFINITY;
       const double step = std::min(primal, dual);
+      // Of a matrix that is nearly singular x drifts off its active limits on the way.
+      if (step == INFINITY && !polished) {
+        settle(H, g, lower, upper, x);
+        polished = true;
+        break;
+      }
       // What the others leave of it is rounding, of a matrix that may be nearly singular: it is met as well as can be.
-      if (step == INFINITY && out <= kMet * (scale_[next.row] * size + std::abs(bound))) {
+      if (step == INFINITY && out <= room(next.row, bound, x)) {
         met_[static_cast<std::size_t>(next.row)] = true;
         break;
       }
@@ -168,6 +187,7 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
       if (step == primal) {
         at_[next.row] = next.sign > 0.0 ? At::lower : At::upper;
         active_.push_back(next);
+        polished = false;
         break;
       }
       at_[active_[leaving].row] = At::between;

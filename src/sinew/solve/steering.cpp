@@ -133,10 +133,10 @@ bool Steering::relax(const SteeringProblem& problem, Point& at) {
   constexpr double kShort = 1e-10, kRounding = 1e-10;
   const Eigen::Index n = A_.cols(), m = problem.A.rows();
   // Limits in units of what they are, commands in units of what these limits ask of them.
-  Eigen::VectorXd unit(m), length = Eigen::VectorXd::Zero(n), x;
+  const Eigen::VectorXd& unit = problem.unit;
+  Eigen::VectorXd length = Eigen::VectorXd::Zero(n), x;
   for (Eigen::Index row = 0; row < m; ++row) {
-    const auto size = [](double limit) { return std::isfinite(limit) ? std::abs(limit) : 0.0; };
-    unit[row] = std::max(size(lower_[row]), size(upper_[row]));
+    if (!std::isfinite(lower_[row]) && !std::isfinite(upper_[row])) continue;
     const double steep = n > 0 ? A_.row(row).cwiseAbs().maxCoeff() : 0.0;
     for (Eigen::Index a = 0; a < n; ++a) {
       if (std::abs(A_(row, a)) > 1e-3 * steep) length[a] = std::max(length[a], unit[row] / std::abs(A_(row, a)));
@@ -148,7 +148,6 @@ bool Steering::relax(const SteeringProblem& problem, Point& at) {
   A.leftCols(n) = A_.topRows(m) * length.asDiagonal();
   Eigen::VectorXd least = lower_.head(m), most = upper_.head(m);
   for (Eigen::Index row = 0; row < m; ++row) {
-    if (unit[row] == 0.0) unit[row] = std::max(A.row(row).cwiseAbs().maxCoeff(), 1e-300);
     A.row(row) /= unit[row];
     least[row] /= unit[row];
     most[row] /= unit[row];

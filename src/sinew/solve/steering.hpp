@@ -23,6 +23,7 @@ struct SteeringProblem {
   Eigen::VectorXd lower, upper;
   /// Of each limit: where they exclude each other, those of little firmness give way first; infinite: never.
   Eigen::VectorXd firmness;
+  Eigen::VectorXd unit;  ///< in what each limit is told: less than 1e-9 of that is rounding
   /// Where J leaves a choice, the first rows of A come nearest to these.
   Eigen::VectorXd wish;
   CoulombProblem contacts;
