@@ -2,7 +2,7 @@
 
 #include "sinew/commands.hpp"
 #include "sinew/io/mesh_file.hpp"
-#include "sinew/loaded_scene.hpp"
+#include "sinew/runs/loaded_scene.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/run.hpp"
@@ -104,7 +104,7 @@ void print_contact(const Model& model) {
 }  // namespace
 
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
-  const LoadedScene loaded = load(io::read_scene(scene, overrides));
+  const runs::LoadedScene loaded = runs::load(io::read_scene(scene, overrides));
   const Model& model = loaded.model;
   switch (model.scene.analysis) {
     case Analysis::dynamic:

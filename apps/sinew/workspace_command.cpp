@@ -10,8 +10,8 @@
 #include "sinew/io/append_file.hpp"
 #include "sinew/io/picture.hpp"
 #include "sinew/io/readable.hpp"
-#include "sinew/loaded_scene.hpp"
 #include "sinew/progress.hpp"
+#include "sinew/runs/loaded_scene.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/targets.hpp"
@@ -68,7 +68,7 @@ int map_workspace(const WorkspaceOptions& options) {
   const io::SceneFile file = io::read_scene(options.scene, options.overrides);
   if (!file.lines.contains("newton.limit") && !file.lines.contains("newton.tolerance"))
     overrides.back() = "newton=converged";
-  LoadedScene loaded = load(io::read_scene(options.scene, overrides));
+  runs::LoadedScene loaded = runs::load(io::read_scene(options.scene, overrides));
   const Model& model = loaded.model;
   std::vector<std::vector<double>> commands;
   try {

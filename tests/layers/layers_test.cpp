@@ -39,6 +39,7 @@ const Layers kMayInclude = {
     {"solve", {"linalg"}},
     {"sim", {"error", "lie", "linalg", "rod", "solid", "rigid", "contact", "constraint", "solve", "threads"}},
     {"io", {"error", "solid", "sim"}},
+    {"runs", {"error", "solid", "sim", "io"}},
 };
 
 const std::set<std::string> kVagueNames = {"util",    "utils", "utilities", "common", "base",  "helper",

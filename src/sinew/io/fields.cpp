@@ -23,8 +23,8 @@ const Entry* find(const Node& map, const std::string& key) {
   return found == map.entries.end() ? nullptr : &*found;
 }
 
-/// The value of a key as JSON, for the examples in a schema: numbers and booleans stay what they are, other scalars
-/// become strings.
+}  // namespace
+
 Json to_json(const Node& node) {
   if (node.kind == Node::Kind::map) {
     Json json = Json::object();
@@ -44,8 +44,6 @@ Json to_json(const Node& node) {
   if (std::from_chars(node.text.data(), end, real).ptr == end) return real;
   return node.text;
 }
-
-}  // namespace
 
 std::string help(const Key& key) {
   return fmt::format("`{}` is {}; for example `{}: {}`", key.name, key.doc, key.name, key.example);
@@ -122,7 +120,7 @@ std::filesystem::path At::use(const std::string& name) const {
 
 void At::refuse(std::string rule, std::string remedy) const {
   if (remedy.empty() && key_ != nullptr) remedy = help(*key_);
-  throw InputError({.file = line_ > 0 ? file_ : "--set",
+  throw InputError({.file = line_ > 0 ? file_ : unlined_,
                     .line = line_,
                     .path = path_,
                     .value = show(*node_),
@@ -133,7 +131,7 @@ void At::refuse(std::string rule, std::string remedy) const {
 void At::refuse_key(const std::string& key, std::string rule, std::string remedy) const {
   const Entry* found = find(*node_, key);
   const int line = found == nullptr ? line_ : found->line;
-  throw InputError({.file = line > 0 ? file_ : "--set",
+  throw InputError({.file = line > 0 ? file_ : unlined_,
                     .line = line,
                     .path = (path_.empty() ? "" : path_ + ".") + printable(key),
                     .value = {},

@@ -14,6 +14,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -24,6 +25,9 @@
 namespace sinew::io {
 
 using Json = nlohmann::ordered_json;
+
+/// A node as JSON: whole numbers, numbers and booleans become what they look like, other scalars strings.
+Json to_json(const Node& node);
 
 enum class Need { required, optional };
 
@@ -41,10 +45,17 @@ std::string help(const Key& key);
 /// A value in the document, with the way to it; whoever finds a fault in it refuses it here.
 class At {
  public:
-  /// Files that the document names are looked for in `folder`, and listed in `used`.
+  /// Files that the document names are looked for in `folder`, and listed in `used`. What has no line was set by an
+  /// override, unless nothing has one: then a program has put the document together, and `file` is what it is called.
   At(const Node& root, std::string file, std::filesystem::path folder = {},
      std::vector<std::filesystem::path>* used = nullptr)
-      : root_(&root), node_(&root), file_(std::move(file)), folder_(std::move(folder)), used_(used), line_(root.line) {}
+      : root_(&root),
+        node_(&root),
+        file_(std::move(file)),
+        folder_(std::move(folder)),
+        used_(used),
+        unlined_(root.line > 0 ? "--set" : file_),
+        line_(root.line) {}
 
   const Node& node() const { return *node_; }
   const std::string& path() const { return path_; }
@@ -79,6 +90,7 @@ class At {
   std::string file_;
   std::filesystem::path folder_;
   std::vector<std::filesystem::path>* used_ = nullptr;
+  std::string unlined_;
   std::string path_;
   int line_ = 0;
   std::shared_ptr<const Key> key_;
@@ -164,6 +176,15 @@ struct Object {
 void check_keys(const At& at, const std::string& what, const std::vector<Key>& keys, const std::vector<Rule>& rules);
 Json object_schema(const std::vector<Key>& keys, const std::vector<Json>& values, const std::vector<Rule>& rules);
 
+/// The name of a struct without its namespaces, under which schemas, and classes made from them, know its objects.
+template <class T>
+std::string type_name() {
+  const std::string_view whole = __PRETTY_FUNCTION__;  // "... [with T = sinew::SolidPart; ...]"
+  const std::size_t begin = whole.find("T = ") + 4;
+  const std::string_view name = whole.substr(begin, whole.find_first_of(";]", begin) - begin);
+  return std::string(name.substr(name.rfind(':') + 1));
+}
+
 template <class T>
 Type<T> map(Object<T> object) {
   std::vector<Key> keys;
@@ -180,7 +201,10 @@ Type<T> map(Object<T> object) {
   const auto schema = [=] {
     std::vector<Json> values;
     for (const Field<T>& f : object.fields) values.push_back(f.schema());
-    return object_schema(keys, values, object.rules);
+    Json json = object_schema(keys, values, object.rules);
+    json["title"] = type_name<T>();
+    json["$comment"] = object.what;
+    return json;
   };
   return {read, schema};
 }

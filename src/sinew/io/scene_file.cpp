@@ -1,5 +1,9 @@
 #include "sinew/io/scene_file.hpp"
 
+#include <fmt/core.h>
+
+#include <utility>
+
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/document.hpp"
 #include "sinew/io/scene_fields.hpp"
@@ -20,6 +24,17 @@ void collect_lines(std::map<std::string, int>& lines, const Node& node, const st
   }
 }
 
+SceneFile scene_file(const Node& root, std::string text, const std::filesystem::path& name,
+                     const std::filesystem::path& folder) {
+  SceneFile file;
+  file.scene = scene_type().read(At(root, name.string(), folder, &file.tables));
+  file.scene.folder = folder.empty() ? "." : folder;
+  file.text = std::move(text);
+  file.path = name;
+  collect_lines(file.lines, root, "");
+  return file;
+}
+
 }  // namespace
 
 SceneFile read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -32,13 +47,15 @@ SceneFile parse_scene(const std::string& text, const std::filesystem::path& name
   if (root.kind == Node::Kind::map) {
     for (const std::string& assignment : overrides) set_value(root, assignment);
   }
-  SceneFile file;
-  file.scene = scene_type().read(At(root, name.string(), folder, &file.tables));
-  file.scene.folder = folder.empty() ? "." : folder;
-  file.text = overrides.empty() ? text : write_document(root);
-  file.path = name;
-  collect_lines(file.lines, root, "");
-  return file;
+  return scene_file(root, overrides.empty() ? text : write_document(root), name, folder);
+}
+
+SceneFile scene_of(const Node& root, const std::filesystem::path& folder) {
+  const std::string text = write_document(root);
+  if (text.size() > largest_document)
+    throw InputError({.rule = fmt::format("the scene is longer than {} KiB when written down", largest_document / 1024),
+                      .remedy = "put long tables into a file, `displacement: {file: pull.csv, column: x}`"});
+  return scene_file(root, text, "", folder);
 }
 
 int line_of(const SceneFile& file, const std::string& field_path) {

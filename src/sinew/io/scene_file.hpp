@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/io/document.hpp"
 #include "sinew/sim/scene.hpp"
 
 namespace sinew::io {
@@ -25,6 +26,9 @@ SceneFile read_scene(const std::filesystem::path& file, const std::vector<std::s
 /// The same for text: `name` stands in messages, meshes are looked up from `folder`.
 SceneFile parse_scene(const std::string& text, const std::filesystem::path& name, const std::filesystem::path& folder,
                       const std::vector<std::string>& overrides = {});
+
+/// The same for a tree without lines, put together by a program: messages name the field alone.
+SceneFile scene_of(const Node& root, const std::filesystem::path& folder);
 
 /// Line of the field, or of the nearest object around it that the file has; 0 if there is none or it was overridden.
 int line_of(const SceneFile& file, const std::string& field_path);

@@ -501,4 +501,27 @@ ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, con
   return result;
 }
 
+Eigen::MatrixXd volume_compliance(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
+                                  double h) {
+  Memory& memory = workspace.memory();
+  const Command command = command_of(model, state);
+  StageTimes times;
+  const auto nothing = [](Increment&) {};
+  const bool ok = of == JacobianOf::equilibrium
+                      ? linearize_at(memory, state, state, command, state.time, times, nothing)
+                      : linearize_step(memory, state, command, h, times, nothing);
+  if (!ok) throw std::runtime_error("volume_compliance: a matrix is singular");
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(model.rows, model.rows);
+  for (const solve::VolumePart& volume : memory.here.reduced().problem.volumes) {
+    for (std::size_t j = 0; j < volume.at.size(); ++j) {
+      for (std::size_t i = 0; i < volume.at.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+        W(volume.at[i], volume.at[j]) +=
+            volume.symmetric ? volume.W(std::max(row, column), std::min(row, column)) : volume.W(row, column);
+      }
+    }
+  }
+  return W;
+}
+
 }  // namespace sinew

@@ -107,4 +107,10 @@ enum class JacobianOf { step, equilibrium };
 ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
                                    double h);
 
+/// W = H A^-1 H^T of (11): how solids give way [m/N] where they are coupled, a row and a column for each of the model's
+/// constraint rows (zero for those that no solid takes part in); rods are not part of it. As above: of a step of h, or
+/// at rest. Throws std::runtime_error where a matrix is singular.
+Eigen::MatrixXd volume_compliance(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
+                                  double h);
+
 }  // namespace sinew

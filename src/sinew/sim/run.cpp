@@ -18,7 +18,8 @@ StepReport taken(StepResult result, State& state) {
   return result.report;
 }
 
-StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
+StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation,
+                          const Told& told) {
   if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
   if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);
   const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
@@ -36,10 +37,16 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
-    command_at(model, to, command);
+    if (told.command)
+      command = *told.command;
+    else
+      command_at(model, to, command);
     if (!lands) command = between(command_of(model, state), command, part / whole);
     if (!model.effectors.empty()) {
-      goal_at(model, time, goal);
+      if (told.goal)
+        goal = *told.goal;
+      else
+        goal_at(model, time, goal);
       report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
                            : inverse_step(model, workspace, goal, command, lands ? whole : part, state, evaluation);
     } else {
@@ -62,12 +69,12 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
 
 }  // namespace
 
-StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation) {
+StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation, const Told& told) {
   double seconds = 0.0;
   StepReport report;
   {
     const Clock clock(seconds);
-    report = try_to_advance(model, workspace, state, evaluation);
+    report = try_to_advance(model, workspace, state, evaluation, told);
   }
   report.times.step = seconds;
   return report;

@@ -4,15 +4,23 @@
 #include <functional>
 
 #include "sinew/sim/step.hpp"
+#include "sinew/sim/targets.hpp"
 
 namespace sinew {
 
 /// A step that does not converge is tried again with half the time, this many times at most.
 constexpr int kHalvings = 5;
 
+/// What a controller says instead of the scene, for the next point of the time grid; null: the scene's own.
+struct Told {
+  const Command* command = nullptr;
+  const Goal* goal = nullptr;
+};
+
 /// One accepted step towards the next point of the time grid, halved as often as needed: the only thing that decides
 /// how far is the state, so a run continued from a recorded state makes the same steps. On failure the state stays.
-StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation = Evaluation::full);
+StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation = Evaluation::full,
+                   const Told& told = {});
 
 /// Steps of the whole grid: duration / step, rounded up to a whole number; of statics one, to the end of the path (of
 /// as many accepted steps as it takes); of a modal analysis the number of modes.

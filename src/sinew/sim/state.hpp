@@ -75,6 +75,7 @@ struct PathState {
   Eigen::VectorXd direction;  ///< and of everything else; empty before the first step and in other analyses
 };
 
+/// Everything that changes, as a value.
 struct State {
   long grid = 0;      ///< steps of the scene's time grid that are behind it
   double time = 0.0;  ///< [s]; of a modal analysis the number of the mode

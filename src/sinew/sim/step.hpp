@@ -92,6 +92,7 @@ struct Aim {
   int apart = -1;  ///< effector whose two are to press and are not near each other
 };
 
+/// What came of a step: how it ended, how well, and what it cost.
 struct StepReport {
   Status status = Status::rest;
   int newton = 0;          ///< linearisations made

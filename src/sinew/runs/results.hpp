@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "sinew/io/recording.hpp"
-#include "sinew/loaded_scene.hpp"
+#include "sinew/runs/loaded_scene.hpp"
 #include "sinew/sim/step.hpp"
 
-namespace sinew::app {
+namespace sinew::runs {
 
 /// How a run ended, for report.json and for people.
 struct RunSummary {
@@ -39,4 +39,4 @@ std::string profile(const RunSummary& summary);
 std::vector<std::string> write_views(const std::filesystem::path& folder, const LoadedScene& loaded,
                                      const io::Recording& recording, const RunSummary& summary);
 
-}  // namespace sinew::app
+}  // namespace sinew::runs

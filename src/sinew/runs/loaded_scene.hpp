@@ -6,10 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/io/recording.hpp"
 #include "sinew/io/scene_file.hpp"
 #include "sinew/sim/model.hpp"
 
-namespace sinew::app {
+namespace sinew::runs {
 
 struct LoadedScene {
   io::SceneFile file;
@@ -21,4 +22,8 @@ struct LoadedScene {
 /// Builds what was read. Faults that the engine finds get the file and line of the field they are about.
 LoadedScene load(io::SceneFile file);
 
-}  // namespace sinew::app
+/// The scene of a recording, as it was when it was recorded. Throws InputError where its files are others by now, or
+/// its states are of another version.
+LoadedScene load_recorded(const io::Recording& recording, const std::filesystem::path& path);
+
+}  // namespace sinew::runs

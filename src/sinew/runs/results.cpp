@@ -1,4 +1,4 @@
-#include "sinew/results.hpp"
+#include "sinew/runs/results.hpp"
 
 #include <fmt/core.h>
 
@@ -18,7 +18,7 @@
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"
 
-namespace sinew::app {
+namespace sinew::runs {
 
 using Json = nlohmann::ordered_json;
 
@@ -252,4 +252,4 @@ std::string profile(const RunSummary& summary) {
   return text;
 }
 
-}  // namespace sinew::app
+}  // namespace sinew::runs

@@ -1,0 +1,268 @@
+// Whole runs.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <chrono>
+
+#include "docs.hpp"
+#include "engine.hpp"
+#include "sinew/sim/reach.hpp"
+#include "sinew/sim/signals.hpp"
+#include "sinew/sim/view.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Looks, some times a second, whether Ctrl-C was pressed, and tells how far the run is.
+class Watch {
+ public:
+  explicit Watch(nb::handle progress) : progress_(progress) {}
+  bool goes_on(double done, const std::string& note) {
+    const Clock::time_point now = Clock::now();
+    if (now - last_ < std::chrono::milliseconds(50)) return true;
+    last_ = now;
+    const nb::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) {
+      PyErr_Clear();  // told once the run has ended
+      interrupted = true;
+      return false;
+    }
+    if (!progress_.is_none()) progress_(done, note);
+    return true;
+  }
+  bool interrupted = false;
+
+ private:
+  nb::handle progress_;
+  Clock::time_point last_ = Clock::now();
+};
+
+std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start,
+                              const std::optional<std::filesystem::path>& folder, bool replace, nb::handle progress,
+                              int threads) {
+  if (start.model != shared) throw nb::value_error("this is a state of another model");
+  const Model& model = shared->model;
+  auto all = std::make_shared<Run>(Run{shared, {}, {}});
+  const State first = start.state();
+  Watch watch(progress);
+  const nb::gil_scoped_release release;
+  std::optional<io::RecordingWriter> writer;
+  if (folder) writer = runs::begin_recording(shared->loaded, first, *folder, replace);
+  all->steps.push_back(runs::recorded(model, first, StepReport{}));
+  runs::Recorded recorded = runs::record(
+      model, first,
+      [&](io::RecordedStep step) {
+        if (writer) writer->append(step);
+        all->steps.push_back(std::move(step));
+      },
+      [&](const State& state, const StepReport&) { return watch.goes_on(state.time, when(model, state)); },
+      threads > 0 ? threads : runs::usual_threads());
+  all->summary = std::move(recorded.summary);
+  if (folder) {
+    io::Recording recording{runs::header_of(shared->loaded), all->steps};
+    runs::write_views(*folder, shared->loaded, recording, all->summary);
+  }
+  return all;
+}
+
+std::shared_ptr<Run> read_run(const std::filesystem::path& folder) {
+  const nb::gil_scoped_release release;
+  const std::filesystem::path path = std::filesystem::is_directory(folder) ? runs::recording_path(folder) : folder;
+  io::Recording recording = io::read_recording(path);
+  auto shared = std::make_shared<SharedModel>(runs::load_recorded(recording, path));
+  auto all = std::make_shared<Run>(Run{shared, {}, std::move(recording.steps)});
+  const bool whole = !all->steps.empty() && all->steps.back().time >= run_duration(shared->model.scene) * (1.0 - 1e-9);
+  all->summary.end = whole ? "done" : "unfinished";
+  all->summary.warnings = shared->model.warnings;
+  return all;
+}
+
+std::size_t number_in(const Run& own, long i) {
+  const auto size = static_cast<long>(own.steps.size());
+  if (i < -size || i >= size) throw nb::index_error("the run has no such step");
+  return static_cast<std::size_t>(i < 0 ? i + size : i);
+}
+
+LiveState state_of(const Run& own, long i) {
+  const Model& model = own.model->model;
+  LiveState live{own.model, std::make_shared<State>(unpack(model, own.steps[number_in(own, i)].state))};
+  live.command = sinew::command_of(model, *live.now);
+  live.goal = goal_at(model, live.now->time);
+  return live;
+}
+
+template <class Of>
+Numbers over_time(const Run& own, const Of& of) {
+  std::vector<double> all;
+  all.reserve(own.steps.size());
+  for (const io::RecordedStep& step : own.steps) all.push_back(of(step));
+  return vector_of(std::move(all));
+}
+
+template <class Of>
+std::vector<std::string> words_over_time(const Run& own, const Of& of) {
+  std::vector<std::string> all;
+  for (const io::RecordedStep& step : own.steps) all.push_back(of(step));
+  return all;
+}
+
+nb::dict signals_of(const Run& own) {
+  nb::dict all;
+  std::size_t i = 0;
+  for (const Column& column : signal_columns(own.model->model)) {
+    all[column.name.c_str()] = over_time(own, [i](const io::RecordedStep& step) { return step.signals[i]; });
+    ++i;
+  }
+  return all;
+}
+
+nb::tuple reduced(const Run& own) {
+  nb::list steps;
+  for (const io::RecordedStep& step : own.steps)
+    steps.append(nb::make_tuple(step.time, step.status, step.targets, step.newton, step.residual, step.violation,
+                                vector_of(step.signals), vector_of(step.state)));
+  return nb::make_tuple(nb::module_::import_("sinew.running").attr("_run_again"),
+                        nb::make_tuple(own.model, own.summary.end, own.summary.warnings, own.summary.threads, steps));
+}
+
+std::shared_ptr<Run> restored(ModelPointer model, const std::string& end, const std::vector<std::string>& warnings,
+                              int threads, const nb::list& steps) {
+  auto all = std::make_shared<Run>(Run{model, {}, {}});
+  all->summary.end = end;
+  all->summary.warnings = warnings;
+  all->summary.threads = threads;
+  for (const nb::handle own : steps) {
+    all->steps.push_back({nb::cast<double>(own[0]), nb::cast<std::string>(own[1]), nb::cast<std::string>(own[2]),
+                          nb::cast<std::uint32_t>(own[3]), nb::cast<double>(own[4]), nb::cast<double>(own[5]),
+                          nb::cast<std::vector<double>>(own[6]), nb::cast<std::vector<double>>(own[7])});
+  }
+  return all;
+}
+
+void save(const Run& own, const std::filesystem::path& folder, bool replace) {
+  const nb::gil_scoped_release release;
+  const State first = unpack(own.model->model, own.steps.at(0).state);
+  io::RecordingWriter writer = runs::begin_recording(own.model->loaded, first, folder, replace);
+  for (std::size_t i = 1; i < own.steps.size(); ++i) writer.append(own.steps[i]);
+  runs::write_views(folder, own.model->loaded, {runs::header_of(own.model->loaded), own.steps}, own.summary);
+}
+
+/// Equilibria all over the limits of the sought motors, as rows of numbers.
+nb::tuple workspace(SharedModel& shared, int samples, nb::handle progress, int threads) {
+  const Model& model = shared.model;
+  std::vector<ReachSample> found;
+  Watch watch(progress);
+  {
+    const nb::gil_scoped_release release;
+    int tried = 0;
+    sample_reach(
+        model, spread_commands(model, samples),
+        [&](const ReachSample& sample) {
+          found.push_back(sample);
+          return watch.goes_on(++tried, std::string(to_string(sample.status)));
+        },
+        threads);
+  }
+  const auto rows = static_cast<Eigen::Index>(found.size()), motors = static_cast<Eigen::Index>(model.sought.size());
+  Eigen::MatrixXd forces(rows, motors), positions(rows, motors), values(rows, effector_size(model));
+  forces.setConstant(NAN);
+  positions.setConstant(NAN);
+  values.setConstant(NAN);
+  std::vector<bool> within;
+  std::vector<std::string> status;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const ReachSample& own = found[static_cast<std::size_t>(i)];
+    within.push_back(own.within);
+    status.emplace_back(to_string(own.status));
+    for (Eigen::Index a = 0; a < motors; ++a) {
+      const auto at = static_cast<std::size_t>(a);
+      const bool known = accepted(own.status);
+      const bool force = model.actuators[model.sought[at]].told_force();
+      if (known || force) forces(i, a) = known ? own.forces[at] : own.commands[at];
+      if (known || !force) positions(i, a) = known ? own.positions[at] : own.commands[at];
+    }
+    if (!accepted(own.status)) continue;
+    for (const EffectorModel& effector : model.effectors)
+      values.row(i).segment(effector.first, effector.size) = effector_value(model, own.state, effector);
+  }
+  std::vector<std::string> columns;
+  for (const EffectorModel& effector : model.effectors) {
+    for (const Column& column : effector_columns(model, effector)) columns.push_back(column.name);
+  }
+  std::vector<std::string> names;
+  for (const int sought : model.sought) names.push_back(model.actuators[sought].name);
+  return nb::make_tuple(names, columns, status, within, matrix_of(forces), matrix_of(positions), matrix_of(values),
+                        watch.interrupted);
+}
+
+}  // namespace
+
+void bind_runs(nb::module_& module) {
+  nb::class_<Run>(module, "Run", "A run: every accepted step, with its state, in memory.")
+      .def("__len__", [](const Run& own) { return own.steps.size(); })
+      .def_ro("model", &Run::model, "What was run.")
+      .def("state", &state_of, "number"_a = -1, "The state after a step; 0: the start, -1: the end.")
+      .def_prop_ro(
+          "time", [](const Run& own) { return over_time(own, [](const auto& step) { return step.time; }); },
+          "[s] of each step, the start first.")
+      .def_prop_ro("signals", &signals_of,
+                   nb::sig("def signals(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"),
+                   "All signals over time by their names, in SI: {'tip.x': (steps,), ...}.")
+      .def_prop_ro(
+          "newton",
+          [](const Run& own) {
+            return over_time(own, [](const auto& step) { return static_cast<double>(step.newton); });
+          },
+          "Linearisations of each step.")
+      .def_prop_ro(
+          "residual", [](const Run& own) { return over_time(own, [](const auto& step) { return step.residual; }); },
+          doc::StepReport_residual)
+      .def_prop_ro(
+          "violation", [](const Run& own) { return over_time(own, [](const auto& step) { return step.violation; }); },
+          doc::StepReport_violation)
+      .def_prop_ro(
+          "status", [](const Run& own) { return words_over_time(own, [](const auto& step) { return step.status; }); },
+          "How each step ended.")
+      .def_prop_ro(
+          "targets", [](const Run& own) { return words_over_time(own, [](const auto& step) { return step.targets; }); },
+          "What came of the targets in each step.")
+      .def_prop_ro(
+          "end", [](const Run& own) { return own.summary.end; },
+          "How it ended: done, numerical_stop, interrupted or unfinished.")
+      .def_prop_ro(
+          "failure",
+          [](const Run& own) {
+            return own.summary.end == "numerical_stop" ? std::string(to_string(own.summary.failure.status)) : "";
+          },
+          "The status of the step that stopped it; empty if none did.")
+      .def_prop_ro(
+          "failure_detail",
+          [](const Run& own) {
+            if (own.summary.end != "numerical_stop") return std::string();
+            const StepReport& failure = own.summary.failure;
+            return (failure.detail.empty() ? "" : failure.detail + ". ") + std::string(explain(failure.status));
+          },
+          "What failed in it, and what to try.")
+      .def_prop_ro(
+          "warnings", [](const Run& own) { return own.summary.warnings; }, "What a person should know of it.")
+      .def("save", &save, "folder"_a, nb::kw_only(), "replace"_a = false,
+           "Writes a results folder, as `sinew run` does: recording, tables, ParaView files, picture, report.")
+      .def("__reduce__", &reduced)
+      .def("__repr__", [](const Run& own) {
+        return "<sinew.Run of " + std::to_string(own.steps.size() - 1) + " steps, " + own.summary.end + ">";
+      });
+  module.def("simulate", &simulate, "model"_a, "state"_a, "folder"_a.none(), "replace"_a, "progress"_a.none(),
+             "threads"_a, "Runs from a state to the end of the scene.");
+  module.def("read_run", &read_run, "folder"_a, "A run from its results folder, or its recording.");
+  module.def("workspace", &workspace, "model"_a, "samples"_a, "progress"_a.none(), "threads"_a, doc::sample_reach);
+  module.def("_restored", &restored);
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,102 @@
+"""Everything public is told of, and types are right."""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+import sinew
+from sinew import convert, envs, errors, mesh, plot, running
+
+MODULES = [sinew, convert, envs, errors, mesh, plot, running]
+
+
+def public() -> list[tuple[str, object]]:
+    found: dict[str, object] = {}
+    for module in MODULES:
+        for name, own in vars(module).items():
+            if name.startswith("_") or inspect.ismodule(own) or not getattr(own, "__module__", "").startswith("sinew"):
+                continue
+            found[f"{own.__module__}.{name}"] = own
+            if inspect.isclass(own):
+                for member, value in vars(own).items():
+                    if not member.startswith("_") and (callable(value) or isinstance(value, property)):
+                        found[f"{own.__module__}.{name}.{member}"] = value
+    return sorted(found.items())
+
+
+# What overrides says what it says above.
+INHERITED = {"begin", "extra", "reward", "reset", "step", "close_extras", "ahead"}
+
+
+@pytest.mark.parametrize(("name", "own"), public(), ids=lambda own: own if isinstance(own, str) else "")
+def test_everything_public_has_a_docstring(name: str, own: object) -> None:
+    if name.split(".")[-1] in INHERITED and ".envs." in name:
+        return
+    assert (inspect.getdoc(own) or "").strip(), name
+
+
+def test_headers_are_read_as_they_are_written(tmp_path: Path) -> None:
+    header = tmp_path / "a.hpp"
+    header.write_text(
+        "namespace x {\n/// A thing.\nstruct Thing {\n  double a = 0.0, b;  ///< [m] both\n  int c{};  ///< first\n"
+        "           ///< and second\n  /// Above.\n  void f(int g) const;\n  int silent;\n};\n"
+        "/// Does it,\n/// well.\nint work(const Thing& thing,\n         int more = 3);\n"
+        "enum class Kind { one, two };  ///< kinds\n}\n"
+    )
+    out = tmp_path / "docs.hpp"
+    subprocess.run([sys.executable, ROOT / "python" / "engine" / "header_docs.py", out, header], check=True)
+    told = dict(
+        (line.split()[4], line.split('R"doc(')[1].removesuffix(')doc";'))
+        for line in out.read_text().splitlines()
+        if line.startswith("inline")
+    )
+    assert told == {
+        "Thing": "A thing.",
+        "Thing_a": "[m] both",
+        "Thing_b": "[m] both",
+        "Thing_c": "first and second",
+        "Thing_f": "Above.",
+        "work": "Does it, well.",
+        "Kind": "kinds",
+    }
+
+
+def test_types_are_strictly_right() -> None:
+    pytest.importorskip("mypy")
+    told = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--config-file", ROOT / "pyproject.toml", "-p", "sinew"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+    )
+    assert told.returncode == 0, told.stdout
+    examples = sorted((ROOT / "python" / "examples").glob("*.py"))
+    assert examples
+    told = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--config-file", ROOT / "pyproject.toml", *examples],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+    )
+    assert told.returncode == 0, told.stdout
+
+
+@pytest.mark.parametrize("file", ["docs/python.md", "python/README.md"])
+def test_blocks_of_python_run(file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mpl = pytest.importorskip("matplotlib")
+    mpl.use("Agg")
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    blocks = (ROOT / file).read_text().split("```python\n")[1:]
+    assert blocks
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block.split("```")[0], file, "exec"), names)

@@ -1,0 +1,46 @@
+// A run whose steps are kept: what comes out of it besides its states.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sinew/io/recording.hpp"
+#include "sinew/runs/loaded_scene.hpp"
+#include "sinew/runs/results.hpp"
+#include "sinew/sim/run.hpp"
+
+namespace sinew::runs {
+
+/// Threads that share the work of a step unless somebody asks for another number: two, if the machine has them.
+int usual_threads();
+
+/// What a person should know before a run: what `build` found, and what is driven from outside, which a run by itself
+/// leaves as it is.
+std::vector<std::string> warnings_before(const Model& model);
+
+/// What a recording begins with.
+io::RecordingHeader header_of(const LoadedScene& loaded);
+
+/// A new recording in a folder, with the state at t = 0; the folder is made. Throws InputError if it cannot be, or if
+/// it holds a recording that is not to be replaced.
+io::RecordingWriter begin_recording(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
+                                    bool replace);
+
+/// How a run ended.
+struct Recorded {
+  RunEnd end = RunEnd::done;
+  State last;
+  RunSummary summary;  ///< its warnings are those before the run, then those after
+};
+
+/// Steps from a state to the end of the scene. Every accepted step is kept before `on_step` sees it, which may
+/// interrupt.
+Recorded record(const Model& model, const State& start, const std::function<void(io::RecordedStep)>& keep,
+                const OnStep& on_step, int threads);
+
+/// Changes of a scene ("path=value") that let a table of commands (columns such as pull.force) drive its motors instead
+/// of targets. Throws InputError where a column is none of a motor's, or a sought motor has none.
+std::vector<std::string> driven_by(const std::filesystem::path& table, const io::SceneFile& file);
+
+}  // namespace sinew::runs
