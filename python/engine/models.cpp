@@ -63,10 +63,12 @@ void bind_models(nb::module_& module) {
             return start;
           },
           "The state at t = 0.")
-      .def("__reduce__",
-           [](nb::handle_t<SharedModel> own) {
-             return nb::module_::import_("sinew.running").attr("_reduced_model")(own);
-           })
+      .def(
+          "__reduce__",
+          [](nb::handle_t<SharedModel> own) {
+            return nb::module_::import_("sinew.running").attr("_reduced_model")(own);
+          },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"))
       .def_prop_ro(
           "title", [](const SharedModel& own) { return own.model.scene.title; }, "The scene's title.")
       .def_prop_ro(
@@ -130,39 +132,39 @@ void bind_models(nb::module_& module) {
           "Content hash of the scene and all files it reads.");
 
   module.def(
-      "build",
-      [](nb::handle tree, const std::filesystem::path& folder) { return built(io::scene_of(node_of(tree), folder)); },
+      "build", [](nb::handle tree, const std::string& folder) { return built(io::scene_of(node_of(tree), folder)); },
       "tree"_a, "folder"_a, "Builds a scene given as dicts and lists.");
   module.def(
       "build_file",
-      [](const std::filesystem::path& file, const std::vector<std::string>& changes) {
+      [](const std::string& file, const std::vector<std::string>& changes) {
         return built(io::read_scene(file, changes));
       },
       "file"_a, "changes"_a, "Builds the scene of a file.");
   module.def(
       "build_text",
-      [](const std::string& text, const std::filesystem::path& folder) {
-        return built(io::parse_scene(text, "", folder));
-      },
+      [](const std::string& text, const std::string& folder) { return built(io::parse_scene(text, "", folder)); },
       "text"_a, "folder"_a, "Builds a scene given as YAML.");
   module.def(
       "read_tree",
-      [](const std::filesystem::path& file, const std::vector<std::string>& changes) {
+      [](const std::string& file, const std::vector<std::string>& changes) {
         const io::SceneFile scene = io::read_scene(file, changes);
-        return object_of(io::parse_document(scene.text, file.string()));
+        return object_of(io::parse_document(scene.text, file));
       },
-      "file"_a, "changes"_a, "A scene file as dicts and lists, once it has been found to be one.");
+      "file"_a, "changes"_a,
+      nb::sig("def read_tree(file: str, changes: collections.abc.Sequence[str]) -> dict[str, typing.Any]"),
+      "A scene file as dicts and lists, once it has been found to be one.");
   module.def(
-      "check_tree", [](nb::handle tree, const std::filesystem::path& folder) { io::scene_of(node_of(tree), folder); },
-      "tree"_a, "folder"_a, "Reads a scene given as dicts and lists, without building it.");
+      "check_tree", [](nb::handle tree, const std::string& folder) { io::scene_of(node_of(tree), folder); }, "tree"_a,
+      "folder"_a, "Reads a scene given as dicts and lists, without building it.");
   module.def(
       "write_tree", [](nb::handle tree) { return io::write_document(node_of(tree)); }, "tree"_a,
       "Dicts and lists as YAML.");
   module.def("scene_schema", &io::scene_schema, doc::scene_schema);
   module.def(
       "driven_by",
-      [](const std::filesystem::path& table, const std::filesystem::path& file,
-         const std::vector<std::string>& changes) { return runs::driven_by(table, io::read_scene(file, changes)); },
+      [](const std::string& table, const std::string& file, const std::vector<std::string>& changes) {
+        return runs::driven_by(table, io::read_scene(file, changes));
+      },
       "table"_a, "file"_a, "changes"_a, doc::driven_by);
 }
 

@@ -20,7 +20,7 @@ void raise(const sinew::InputFault& fault, const char* what) {
 
 NB_MODULE(_engine, module) {
   module.doc() = "The engine, in C++. Use the package `sinew`.";
-  module.attr("__version__") = SINEW_VERSION;
+  module.attr("version") = SINEW_VERSION;
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {
       std::rethrow_exception(thrown);

@@ -44,9 +44,8 @@ class Watch {
   Clock::time_point last_ = Clock::now();
 };
 
-std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start,
-                              const std::optional<std::filesystem::path>& folder, bool replace, nb::handle progress,
-                              int threads) {
+std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start, const std::optional<std::string>& folder,
+                              bool replace, nb::handle progress, int threads) {
   if (start.model != shared) throw nb::value_error("this is a state of another model");
   const Model& model = shared->model;
   auto all = std::make_shared<Run>(Run{shared, {}, {}});
@@ -72,8 +71,9 @@ std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start,
   return all;
 }
 
-std::shared_ptr<Run> read_run(const std::filesystem::path& folder) {
+std::shared_ptr<Run> read_run(const std::string& name) {
   const nb::gil_scoped_release release;
+  const std::filesystem::path folder = name;
   const std::filesystem::path path = std::filesystem::is_directory(folder) ? runs::recording_path(folder) : folder;
   io::Recording recording = io::read_recording(path);
   auto shared = std::make_shared<SharedModel>(runs::load_recorded(recording, path));
@@ -133,7 +133,7 @@ nb::tuple reduced(const Run& own) {
 }
 
 std::shared_ptr<Run> restored(ModelPointer model, const std::string& end, const std::vector<std::string>& warnings,
-                              int threads, const nb::list& steps) {
+                              int threads, const nb::typed<nb::list, nb::object>& steps) {
   auto all = std::make_shared<Run>(Run{model, {}, {}});
   all->summary.end = end;
   all->summary.warnings = warnings;
@@ -253,16 +253,21 @@ void bind_runs(nb::module_& module) {
       .def_prop_ro(
           "warnings", [](const Run& own) { return own.summary.warnings; }, "What a person should know of it.")
       .def("save", &save, "folder"_a, nb::kw_only(), "replace"_a = false,
+           nb::sig("def save(self, folder: str | os.PathLike[str], *, replace: bool = False) -> None"),
            "Writes a results folder, as `sinew run` does: recording, tables, ParaView files, picture, report.")
-      .def("__reduce__", &reduced)
+      .def("__reduce__", &reduced, nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"))
       .def("__repr__", [](const Run& own) {
         return "<sinew.Run of " + std::to_string(own.steps.size() - 1) + " steps, " + own.summary.end + ">";
       });
   module.def("simulate", &simulate, "model"_a, "state"_a, "folder"_a.none(), "replace"_a, "progress"_a.none(),
              "threads"_a, "Runs from a state to the end of the scene.");
   module.def("read_run", &read_run, "folder"_a, "A run from its results folder, or its recording.");
-  module.def("workspace", &workspace, "model"_a, "samples"_a, "progress"_a.none(), "threads"_a, doc::sample_reach);
-  module.def("_restored", &restored);
+  module.def("workspace", &workspace, "model"_a, "samples"_a, "progress"_a.none(), "threads"_a,
+             nb::sig("def workspace(model: Model, samples: int, progress: object | None, threads: int) -> "
+                     "tuple[list[str], list[str], list[str], list[bool], numpy.typing.NDArray[numpy.float64], "
+                     "numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], bool]"),
+             doc::sample_reach);
+  module.def("restored", &restored, "The run of a pickle.");
 }
 
 }  // namespace sinew::python

@@ -256,16 +256,18 @@ void bind_states(nb::module_& module) {
             return own;
           },
           "model"_a, "numbers"_a, "The state of these `numbers`. Throws ValueError if they are not of this model.")
-      .def("__reduce__",
-           [](const LiveState& own) {
-             const std::vector<double> goal(own.goal.at.begin(), own.goal.at.end());
-             return nb::make_tuple(nb::module_::import_("sinew.running").attr("_state_again"),
-                                   nb::make_tuple(own.model, vector_of(pack(own.state())), own.command.actuators,
-                                                  own.command.loads, goal));
-           })
+      .def(
+          "__reduce__",
+          [](const LiveState& own) {
+            const std::vector<double> goal(own.goal.at.begin(), own.goal.at.end());
+            return nb::make_tuple(nb::module_::import_("sinew.running").attr("_state_again"),
+                                  nb::make_tuple(own.model, vector_of(pack(own.state())), own.command.actuators,
+                                                 own.command.loads, goal));
+          },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"))
       .def("__repr__",
            [](const LiveState& own) { return "<sinew.State at " + when(own.model->model, own.state()) + ">"; });
-  module.def("_unpacked", &unpacked);
+  module.def("unpacked", &unpacked, "The state of a pickle.");
 }
 
 }  // namespace sinew::python

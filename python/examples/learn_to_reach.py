@@ -11,15 +11,16 @@ env = ReachEnv()
 def episode(gains: npt.NDArray[np.float64], seed: int) -> tuple[float, float]:
     """Sum of rewards, and the distance at the end, of pulls in proportion to where the goal is."""
     seen, _ = env.reset(seed=seed)
-    goal, total, info = seen[-3:], 0.0, {}
+    goal, total, distance = seen[-3:], 0.0, 0.0
     sides = np.array([goal[1], goal[2], -goal[1], -goal[2]])
     action = np.clip(gains[0] + gains[1] * sides, -1, 1).astype(np.float32)
     for _ in range(15):
         seen, reward, _, truncated, info = env.step(action)
         total += float(reward)
+        distance = float(info["distance"])
         if truncated:
             break
-    return total, float(info["distance"])
+    return total, distance
 
 
 random = np.random.default_rng(0)

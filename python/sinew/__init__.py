@@ -24,11 +24,11 @@ from sinew._engine import (
     SolidState,
     State,
     StepReport,
-    __version__,
     compliance,
     jacobian,
     manipulability,
     step,
+    version as __version__,
 )
 from sinew.errors import InputError, Interrupted, StepFailed
 from sinew.mesh import Mesh

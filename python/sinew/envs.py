@@ -125,7 +125,7 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
         truncated = failed or self._taken >= self.horizon
         return self.observe(), value, done, truncated, {"status": status, "success": done}
 
-    def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> npt.NDArray[np.uint8] | None:
         """A picture of the state."""
         if self.render_mode is None:
             return None
@@ -137,8 +137,9 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
         figure = Figure(figsize=(5, 5), layout="constrained")
         canvas = FigureCanvasAgg(figure)
         plot.shape(self.state, figure.add_subplot(projection="3d"))
-        canvas.draw()
-        return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+        canvas.draw()  # type: ignore[no-untyped-call]
+        seen = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+        return np.array(seen[:, :, :3], dtype=np.uint8)
 
 
 def _spread(first: float, last: float, count: int) -> list[float]:
@@ -148,7 +149,6 @@ def _spread(first: float, last: float, count: int) -> list[float]:
 
 def trunk_scene(cells: tuple[int, int, int] = (8, 2, 2), sections: int = 10) -> sinew.Scene:
     """A tapered trunk of 195 mm with four cables, as the paper has it, of a mesh as coarse as wanted."""
-    cable = {"section": sinew.Circle(radius="0.5 mm"), "sections": sections}
     material = sinew.RodMaterial(young="5 GPa", poisson=0.4, density="1100 kg/m^3")
     ends = {"right": (1, 0), "back": (0, 1), "left": (-1, 0), "front": (0, -1)}
     return sinew.Scene(
@@ -167,8 +167,9 @@ def trunk_scene(cells: tuple[int, int, int] = (8, 2, 2), sections: int = 10) -> 
         rods={
             name: sinew.Rod(
                 path=[[-0.045, 0.0124 * y, 0.0124 * z], [0.195, 0.005 * y, 0.005 * z]],
+                sections=sections,
+                section=sinew.Circle(radius="0.5 mm"),
                 material=material,
-                **cable,
             )
             for name, (y, z) in ends.items()
         },

@@ -68,9 +68,10 @@ class Part:
     def from_tree(cls: type[P], tree: Tree) -> P:
         """The other way round. Throws TypeError for a key that there is not."""
         if cls._kind and set(tree) == {cls._kind}:
-            tree = tree[cls._kind]
+            inner: Tree = tree[cls._kind]
+            tree = inner
         known = {own.name.rstrip("_"): own for own in dataclasses.fields(cls)}  # type: ignore[arg-type]
-        values = {}
+        values: dict[str, Any] = {}
         for key, value in tree.items():
             if key not in known:
                 raise TypeError(f"{cls.__name__} has no key {key!r}; known: {', '.join(known)}")
@@ -94,7 +95,8 @@ def _part_of(tree: Any, kinds: Sequence[str]) -> Any:
         cls: type[Part] = getattr(scene, kind)
         keys = {own.name.rstrip("_") for own in dataclasses.fields(cls)}  # type: ignore[arg-type]
         if set(tree) == {cls._kind} or (not cls._kind and set(tree) <= keys):
-            return cls.from_tree(tree)
+            part: Part = cls.from_tree(dict(tree))
+            return part
     return dict(tree)
 
 

@@ -21,7 +21,8 @@ def _axes(axes: Axes | None, **of_subplot: Any) -> Axes:
         return axes
     import matplotlib.pyplot as plt
 
-    return plt.figure(layout="constrained").add_subplot(**of_subplot)
+    made: Axes = plt.figure(layout="constrained").add_subplot(**of_subplot)
+    return made
 
 
 def _shown(unit: str) -> tuple[str, float]:
@@ -78,7 +79,8 @@ def shape(state: State | Snapshot, axes: Axes | None = None, *, colors: bool = T
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     snapshot = state.snapshot() if isinstance(state, State) else state
-    own: Any = _axes(axes, projection="3d")
+    made = _axes(axes, projection="3d")
+    own: Any = made
     everything = []
     for solid in snapshot.solids:
         corners = 1e3 * solid.nodes[solid.surface]
@@ -104,7 +106,7 @@ def shape(state: State | Snapshot, axes: Axes | None = None, *, colors: bool = T
         getattr(own, f"set_{axis}label")(f"{axis} [mm]")
     own.set_box_aspect((1, 1, 1))
     own.set_title(snapshot.when or f"t = {snapshot.time:.4g} s")
-    return own
+    return made
 
 
 def section_convergence(
@@ -135,7 +137,8 @@ def _as_list(changes: Changes) -> list[str]:
 
 def workspace(found: Workspace, axes: Axes | None = None) -> Axes:
     """Points that were reached within all limits, in the colours of the largest force."""
-    own: Any = _axes(axes, projection="3d")
+    made = _axes(axes, projection="3d")
+    own: Any = made
     known = found.within & ~np.isnan(found.points).any(axis=1)
     points = 1e3 * found.points[known, :3]
     force = np.abs(found.forces[known]).max(axis=1)
@@ -144,4 +147,4 @@ def workspace(found: Workspace, axes: Axes | None = None) -> Axes:
     for axis, name in zip("xyz", found.columns, strict=False):
         getattr(own, f"set_{axis}label")(f"{name} [mm]")
     own.set_aspect("equal")
-    return own
+    return made

@@ -42,7 +42,7 @@ def build(scene: SceneLike, changes: Changes = ()) -> Model:
     if changes:
         raise ValueError("changes: set the scene's attributes instead; only scenes in files are changed by places")
     model = _engine.build(own.tree(), os.fspath(own.folder))
-    model._scene = own  # its meshes, if they are arrays, live as long, and it can be built again
+    setattr(model, "_scene", own)  # its meshes, if they are arrays, live as long, and it can be built again
     return _known(model)
 
 
@@ -73,11 +73,11 @@ def _built_again(inputs_hash: str, scene: Scene | str, folder: str) -> Model:
 
 
 def _state_again(*parts: Any) -> State:
-    return _engine._unpacked(*parts)
+    return _engine.unpacked(*parts)
 
 
 def _run_again(*parts: Any) -> Run:
-    return _engine._restored(*parts)
+    return _engine.restored(*parts)
 
 
 def simulate(
