@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,41 +16,21 @@
 #include "sinew/runs/record.hpp"
 #include "sinew/sim/step.hpp"
 #include "sinew/sim/targets.hpp"
+#include "sinew/sim/workspaces.hpp"
 
 namespace sinew::python {
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
-/// A model with the memory of its steps: whoever steps borrows a workspace and gives it back, so that threads that step
-/// different states of one model never share one, and one thread uses the same again and again.
+/// A model and the memory of its steps.
 class SharedModel {
  public:
-  explicit SharedModel(runs::LoadedScene scene) : loaded(std::move(scene)), model(loaded.model) {}
+  explicit SharedModel(runs::LoadedScene scene) : loaded(std::move(scene)), model(loaded.model), workspaces(model) {}
 
   const runs::LoadedScene loaded;
   const Model& model;
-
-  class Loan {
-   public:
-    Loan(SharedModel& owner, int threads) : owner_(owner), threads_(threads), workspace_(owner.take(threads)) {}
-    ~Loan() { owner_.give_back(threads_, std::move(workspace_)); }
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
-    Workspace& operator*() { return *workspace_; }
-
-   private:
-    SharedModel& owner_;
-    int threads_;
-    std::unique_ptr<Workspace> workspace_;
-  };
-
- private:
-  std::unique_ptr<Workspace> take(int threads);
-  void give_back(int threads, std::unique_ptr<Workspace> workspace);
-
-  std::mutex mutex_;
-  std::vector<std::pair<int, std::unique_ptr<Workspace>>> idle_;
+  Workspaces workspaces;
 };
 using ModelPointer = std::shared_ptr<SharedModel>;
 

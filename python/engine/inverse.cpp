@@ -23,7 +23,7 @@ ActuatorJacobian jacobian(SharedModel& shared, const LiveState& live, const std:
   const JacobianOf wanted = wanted_of(of);
   const State state = live.state();
   const nb::gil_scoped_release release;
-  SharedModel::Loan workspace(shared, 1);
+  Workspaces::Loan workspace = shared.workspaces.lend();
   return actuator_jacobian(shared.model, *workspace, state, wanted, shared.model.scene.time.step);
 }
 
@@ -34,7 +34,7 @@ Rows compliance(SharedModel& shared, const LiveState& live, const std::string& o
   Eigen::MatrixXd W;
   {
     const nb::gil_scoped_release release;
-    SharedModel::Loan workspace(shared, 1);
+    Workspaces::Loan workspace = shared.workspaces.lend();
     W = volume_compliance(shared.model, *workspace, state, wanted, shared.model.scene.time.step);
   }
   return matrix_of(W);

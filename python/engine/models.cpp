@@ -14,22 +14,6 @@
 
 namespace sinew::python {
 
-std::unique_ptr<Workspace> SharedModel::take(int threads) {
-  const std::lock_guard lock(mutex_);
-  for (auto own = idle_.begin(); own != idle_.end(); ++own) {
-    if (own->first != threads) continue;
-    std::unique_ptr<Workspace> found = std::move(own->second);
-    idle_.erase(own);
-    return found;
-  }
-  return std::make_unique<Workspace>(model, threads);
-}
-
-void SharedModel::give_back(int threads, std::unique_ptr<Workspace> workspace) {
-  const std::lock_guard lock(mutex_);
-  idle_.emplace_back(threads, std::move(workspace));
-}
-
 namespace {
 
 ModelPointer built(io::SceneFile file) {

@@ -134,7 +134,7 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
       ~Free() { busy = false; }
     } free{live.busy};
     const nb::gil_scoped_release release;
-    SharedModel::Loan workspace(shared, threads);
+    Workspaces::Loan workspace = shared.workspaces.lend(threads);
     const bool grid = model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static;
     const Told by{grid ? &told : nullptr, model.effectors.empty() ? nullptr : &goal};
     const long before = state.grid;

@@ -113,7 +113,7 @@ std::optional<At> At::top(const std::string& key) const {
 }
 
 std::filesystem::path At::use(const std::string& name) const {
-  const std::filesystem::path path = folder_ / name;
+  std::filesystem::path path = folder_ / name;
   if (used_ != nullptr && std::find(used_->begin(), used_->end(), path) == used_->end()) used_->push_back(path);
   return path;
 }

@@ -99,8 +99,8 @@ struct Branch {
   Vec3 p;
 };
 Branch branch(const Configuration& shape, double s);
-/// The same in a step known already, given as in Branch; `branch` is written over.
-void branch_in(const Configuration& shape, int section, int step, double s, Branch& branch);
+/// The same in a step of section i that is known already, as in Branch; `branch` is written over.
+void branch_in(const Configuration& shape, int i, int step, double s, Branch& branch);
 
 /// A point on the centreline.
 struct CurvePoint {

@@ -74,7 +74,8 @@ TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::Ve
     const double panel = (to - from) / panels;
     for (std::size_t g = 0; g < rule.node.size() * static_cast<std::size_t>(panels); ++g) {
       const std::size_t node = g % rule.node.size();
-      const double s = from + panel * (static_cast<double>(g / rule.node.size()) + rule.node[node]);
+      const std::size_t before = g / rule.node.size();  // panels
+      const double s = from + panel * (static_cast<double>(before) + rule.node[node]);
       const double weight = panel * rule.weight[node];
       const auto P = legendre(section.local(s));
       const Vec6 xi = strains * P.head(strains.cols());

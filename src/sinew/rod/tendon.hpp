@@ -30,6 +30,6 @@ TendonLength tendon_length(const Rod& rod, const Tendon& tendon, const Eigen::Ve
 
 /// Moment and force, in the axes of the cross-section at s, with which a tension of 1 N loads the rod there: (d x t, t)
 /// with t the tendon's direction. Zero where it does not run.
-Vec6 tendon_wrench(const Rod& rod, const Tendon& tendon, const Eigen::VectorXd& q, int section, double s);
+Vec6 tendon_wrench(const Rod& rod, const Tendon& tendon, const Eigen::VectorXd& q, int number, double s);
 
 }  // namespace sinew::rod

@@ -111,7 +111,7 @@ solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const 
 void check_drive(const Drive& drive, const std::string& path);
 
 /// Statics needs bodies that something holds; in motion they may fly, which is warned of.
-void check_held(Model& model, int solid);
+void check_held(Model& model, int number);
 
 /// One for each kind.
 void build_coupling(Model& model, int number, const Slide& slide);

@@ -191,7 +191,7 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
                           std::vector<FreeMotion>& free, solve::CoupledFactor& factor, solve::CoupledSolution& solution,
                           ContactChange& change) {
   constexpr int kMostTurns = 50;
-  const auto n = static_cast<Eigen::Index>(3 * contacts());
+  const Eigen::Index n = 3 * Eigen::Index{contacts()};
   problem_.b.resize(n);
   old_.resize(n);
   for (int i = 0; i < contacts(); ++i) {

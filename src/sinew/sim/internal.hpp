@@ -14,9 +14,9 @@ void write_internal(const std::vector<rod::Balance>& along, RodState& state);
 /// What the part beyond s exerts on the part before: moments [N m] and forces [N] in the axes of the cross-section. Of
 /// free strains by Hooke's law; of the others, which no law knows, what the loads beyond need for balance. Where a load
 /// is concentrated, its side towards the tip; at the tip itself, the base's.
-rod::Vec6 internal_wrench(const Model& model, const State& state, int rod, double s);
+rod::Vec6 internal_wrench(const Model& model, const State& state, int number, double s);
 
 /// The largest stresses of the cross-section at s.
-rod::SectionStress section_stress(const Model& model, const State& state, int rod, double s);
+rod::SectionStress section_stress(const Model& model, const State& state, int number, double s);
 
 }  // namespace sinew

@@ -280,7 +280,7 @@ void Inverse::steer(const StepContext& context, const State& iterate, Linearizat
       binding_.push_back(bounds_[static_cast<std::size_t>(2 * row + (pulls[row] > 0.0 ? 0 : 1))]);
   }
   for (const solve::Broken& own : steering_.broken())
-    dropped_.push_back(bounds_[static_cast<std::size_t>(2 * own.row + (own.at == solve::At::lower ? 0 : 1))]);
+    dropped_.push_back(bounds_[2 * static_cast<std::size_t>(own.row) + (own.at == solve::At::lower ? 0 : 1)]);
   for (std::size_t a = 0; a < responses_.size(); ++a) {
     const double own = steering_.p()[static_cast<Eigen::Index>(a)];
     increment.reduced.dz += own * responses_[a].dz;

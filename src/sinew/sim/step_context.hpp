@@ -10,7 +10,7 @@ namespace sinew {
 struct StepContext {
   explicit StepContext(const Model& of) : model(of) {}
   /// Memory of an earlier step is used again.
-  void set(const State& from, const Command& command, double h);
+  void set(const State& from, const Command& wanted, double duration);
 
   const Model& model;
   State start;

@@ -1,0 +1,44 @@
+// Workspaces that are lent: for threads that step different states of one model at the same time.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "sinew/sim/step.hpp"
+
+namespace sinew {
+
+/// Whoever steps borrows a workspace and gives it back, so that two threads never share one, and one thread finds the
+/// same again and again. As many are made as are out at the same time. The model must outlive it.
+class Workspaces {
+ public:
+  explicit Workspaces(const Model& model) : model_(model) {}
+
+  class Loan {
+   public:
+    Loan(Workspaces& owner, int threads) : owner_(owner), threads_(threads), own_(owner.take(threads)) {}
+    ~Loan() { owner_.give_back(threads_, std::move(own_)); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    Workspace& operator*() { return *own_; }
+
+   private:
+    Workspaces& owner_;
+    int threads_;
+    std::unique_ptr<Workspace> own_;
+  };
+  /// Until the loan ends; `threads` share the work of its steps.
+  Loan lend(int threads = 1) { return {*this, threads}; }
+
+ private:
+  std::unique_ptr<Workspace> take(int threads);
+  void give_back(int threads, std::unique_ptr<Workspace> own);
+
+  const Model& model_;
+  std::mutex mutex_;
+  std::vector<std::pair<int, std::unique_ptr<Workspace>>> idle_;
+};
+
+}  // namespace sinew
