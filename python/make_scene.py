@@ -90,7 +90,8 @@ class Classes:
         if "anyOf" in schema:
             return _union([self.annotation(one) for one in schema["anyOf"]])
         if "const" in schema:
-            return f'Literal["{schema["const"]}"]'
+            const = schema["const"]
+            return f"Literal[{const if isinstance(const, bool) else json.dumps(const)}]"
         if "enum" in schema:
             return f"Literal[{', '.join(json.dumps(word) for word in schema['enum'])}]"
         if "$ref" in schema:
@@ -113,6 +114,16 @@ class Classes:
                 return f"Mapping[str, {self.annotation(schema['additionalProperties'])}]"
         raise ValueError(f"no type for {schema}")
 
+    def kept(self, schema: Schema, names: list[str]) -> str | None:
+        """The type of a collection of named or listed parts, which is empty unless it is given."""
+        if not names:
+            return None
+        if schema.get("type") == "array":
+            return f"list[{' | '.join(names)}]"
+        if schema.get("type") == "object" and isinstance(schema.get("additionalProperties"), dict):
+            return f"dict[str, {' | '.join(names)}]"
+        return None
+
     def text_of(self, name: str) -> str:
         """The class."""
         schemas = self.found[name]
@@ -121,6 +132,7 @@ class Classes:
             raise ValueError(f"objects of the name {name} have different keys; give one another name in NAMES")
         required = [key for key in keys if all(key in own.get("required", []) for own in schemas)]
         lines: list[str] = []
+        said: list[str] = []
         for key in sorted(keys, key=lambda own: own not in required):
             versions = [own["properties"][key] for own in schemas]
             of_mesh = (name, key) in {("Solid", "mesh"), ("MeshShape", "file")}
@@ -132,21 +144,26 @@ class Classes:
             if any(inner):
                 metadata.append('"named": True')
             extra = f"metadata={{{', '.join(metadata)}}}" if metadata else ""
+            kept = self.kept(versions[0], list(names)) if len(versions) == 1 and not of_mesh else None
             if key in required:
                 default = f" = field({extra})" if extra else ""
+            elif kept:
+                annotation = kept
+                default = f" = field(default_factory={kept.split('[')[0]}, {extra})"
             else:
                 annotation += " | None"
                 default = f" = field(default=None, {extra})" if extra else " = None"
             lines.append(f"    {attribute}: {annotation}{default}")
-            lines += _doc(_said(versions[0]), "    ")
+            said.append(f"{attribute}: {_said(versions[0])}")
         base = "SceneMethods" if name == "Scene" else "Part"
         head = ["", "", "@dataclass(kw_only=True)", f"class {name}({base}):"]
-        head += _doc(_sentence("a whole scene" if name == "Scene" else schemas[0].get("description", schemas[0]["$comment"])), "    ")
-        if self.kind[name]:
-            head += ["", f'    _kind: ClassVar[str] = "{self.kind[name]}"']
         if name == "Scene":
             lines.append('    folder: str | os.PathLike[str] = field(default=".", metadata={"not_a_key": True})')
-            lines += _doc("Where files that the scene names are looked for.", "    ")
+            said.append("folder: Where files that the scene names are looked for.")
+        what = "a whole scene" if name == "Scene" else schemas[0].get("description", schemas[0]["$comment"])
+        head += _docstring(_sentence(what), said)
+        if self.kind[name]:
+            head += ["", f'    _kind: ClassVar[str] = "{self.kind[name]}"']
         return "\n".join([*head, "", *lines]) + "\n"
 
 
@@ -180,9 +197,15 @@ def _said(schema: Schema) -> str:
     return _sentence(text)
 
 
-def _doc(text: str, margin: str) -> list[str]:
-    lines = textwrap.wrap('"""' + text.replace("\\", "\\\\") + '"""', 116, break_long_words=False, break_on_hyphens=False)
-    return [margin + line for line in lines]
+def _docstring(what: str, said: list[str]) -> list[str]:
+    """What the class is, then its keys."""
+
+    def wrapped(text: str, later: str) -> list[str]:
+        whole = {"break_long_words": False, "break_on_hyphens": False}
+        return textwrap.wrap(text.replace("\\", "\\\\"), 120, initial_indent="    ", subsequent_indent=later, **whole)
+
+    keys = [line for own in said for line in wrapped(own, " " * 8)]
+    return [*wrapped('"""' + what, " " * 4), "", *keys, '    """']
 
 
 def main() -> None:

@@ -5,6 +5,7 @@
 #include <nanobind/ndarray.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -44,6 +45,9 @@ struct LiveState {
   Goal goal = {};
   bool busy = false;
 
+  /// One that obeys what it obeyed when it was recorded.
+  static LiveState of(ModelPointer model, State state);
+
   /// Throws where another thread is stepping it.
   const State& state() const;
   /// To be changed: nobody else looks at it.
@@ -62,6 +66,11 @@ struct Run {
   std::vector<io::RecordedStep> steps;
 };
 
+/// UTF-8 of a str. Throws Python's error where it has none.
+std::string text_of(nb::handle value);
+/// Threads that are asked for.
+void require_threads(int threads, int least);
+
 /// Makes a scene's tree from dicts, lists and plain values, and the other way round.
 io::Node node_of(nb::handle value, int depth = 0);
 nb::object object_of(const io::Node& node);
@@ -75,6 +84,7 @@ struct Kept {
 using Rows = Kept<nb::ndarray<nb::numpy, const double, nb::ndim<2>>>;
 using Numbers = Kept<nb::ndarray<nb::numpy, const double, nb::ndim<1>>>;
 using Whole = Kept<nb::ndarray<nb::numpy, const std::int32_t, nb::ndim<2>>>;
+using WholeNumbers = Kept<nb::ndarray<nb::numpy, const std::int32_t, nb::ndim<1>>>;
 
 template <class T>
 nb::capsule keep(std::shared_ptr<T> owner) {
@@ -95,6 +105,7 @@ Numbers numbers_of(const double* data, Eigen::Index size, std::shared_ptr<T> own
 /// Arrays of their own.
 Rows matrix_of(const Eigen::MatrixXd& matrix);
 Numbers vector_of(std::vector<double> numbers);
+WholeNumbers vector_of(std::vector<std::int32_t> numbers);
 Numbers vector_of(const Eigen::VectorXd& numbers);
 
 /// A number, or text with a unit.

@@ -1,4 +1,6 @@
 // Scenes and models.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -16,9 +18,19 @@ namespace sinew::python {
 
 namespace {
 
-ModelPointer built(io::SceneFile file) {
+ModelPointer built(io::SceneFile file, runs::HeldFiles held = {}) {
   const nb::gil_scoped_release release;
-  return std::make_shared<SharedModel>(runs::load(std::move(file)));
+  return std::make_shared<SharedModel>(runs::load(std::move(file), std::move(held)));
+}
+
+/// Meshes by their names, as bytes.
+runs::HeldFiles files_of(const nb::typed<nb::dict, nb::str, nb::bytes>& meshes) {
+  runs::HeldFiles held;
+  for (const auto& [name, own] : meshes) {
+    const nb::bytes bytes = nb::cast<nb::bytes>(own);
+    held.emplace(text_of(nb::str(name)), std::string(bytes.c_str(), bytes.size()));
+  }
+  return held;
 }
 
 std::vector<std::pair<std::string, std::string>> motor_commands(const Model& model) {
@@ -36,16 +48,9 @@ void bind_models(nb::module_& module) {
   nb::class_<SharedModel>(module, "Model",
                           "A scene that has been judged, turned into bodies, rows and numbers. Immutable; steps only "
                           "read it, so threads may share it.",
-                          nb::dynamic_attr(), nb::is_weak_referenceable())
+                          nb::is_weak_referenceable())
       .def(
-          "initial_state",
-          [](ModelPointer own) {
-            LiveState start{own, std::make_shared<State>(sinew::initial_state(own->model))};
-            start.command.actuators.assign(own->model.actuators.size(), 0.0);
-            start.command.loads.assign(own->model.loads.size(), 0.0);
-            start.goal = goal_at(own->model, 0.0);
-            return start;
-          },
+          "initial_state", [](ModelPointer own) { return LiveState::of(own, sinew::initial_state(own->model)); },
           "The state at t = 0.")
       .def(
           "__reduce__",
@@ -53,6 +58,22 @@ void bind_models(nb::module_& module) {
             return nb::module_::import_("sinew.running").attr("_reduced_model")(own);
           },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"))
+      .def("__repr__",
+           [](const SharedModel& own) {
+             const Model& model = own.model;
+             std::string text = "<sinew.Model";
+             if (!model.scene.title.empty()) text += " " + model.scene.title;
+             const auto tell = [&text](const char* what, const std::vector<std::string>& names) {
+               if (!names.empty()) text += fmt::format(", {}: {}", what, fmt::join(names, " "));
+             };
+             tell("solids", names_of(model.solids));
+             tell("rods", names_of(model.rods));
+             tell("cables", names_of(model.cables));
+             tell("bodies", names_of(model.bodies));
+             tell("actuators", names_of(model.actuators));
+             tell("outputs", names_of(model.outputs));
+             return text + ">";
+           })
       .def_prop_ro(
           "title", [](const SharedModel& own) { return own.model.scene.title; }, "The scene's title.")
       .def_prop_ro(
@@ -113,11 +134,24 @@ void bind_models(nb::module_& module) {
           "Where the scene's files are looked for.")
       .def_prop_ro(
           "inputs_hash", [](const SharedModel& own) { return own.loaded.inputs_hash; },
-          "Content hash of the scene and all files it reads.");
+          "Content hash of the scene and all files it reads.")
+      .def_prop_ro(
+          "meshes",
+          [](const SharedModel& own) {
+            nb::dict all;
+            for (const auto& [name, bytes] : own.loaded.held) all[name.c_str()] = nb::bytes(bytes.data(), bytes.size());
+            return all;
+          },
+          nb::sig("def meshes(self) -> dict[str, bytes]"),
+          "Meshes that were handed over as arrays: files of Gmsh by the names that the scene has for them.");
 
   module.def(
-      "build", [](nb::handle tree, const std::string& folder) { return built(io::scene_of(node_of(tree), folder)); },
-      "tree"_a, "folder"_a, "Builds a scene given as dicts and lists.");
+      "build",
+      [](nb::handle tree, const std::string& folder, const std::vector<std::string>& changes,
+         const nb::typed<nb::dict, nb::str, nb::bytes>& meshes) {
+        return built(io::scene_of(node_of(tree), folder, changes), files_of(meshes));
+      },
+      "tree"_a, "folder"_a, "changes"_a, "meshes"_a, "Builds a scene given as dicts and lists.");
   module.def(
       "build_file",
       [](const std::string& file, const std::vector<std::string>& changes) {
@@ -126,8 +160,10 @@ void bind_models(nb::module_& module) {
       "file"_a, "changes"_a, "Builds the scene of a file.");
   module.def(
       "build_text",
-      [](const std::string& text, const std::string& folder) { return built(io::parse_scene(text, "", folder)); },
-      "text"_a, "folder"_a, "Builds a scene given as YAML.");
+      [](const std::string& text, const std::string& folder, const nb::typed<nb::dict, nb::str, nb::bytes>& meshes) {
+        return built(io::parse_scene(text, "", folder), files_of(meshes));
+      },
+      "text"_a, "folder"_a, "meshes"_a, "Builds a scene given as YAML.");
   module.def(
       "read_tree",
       [](const std::string& file, const std::vector<std::string>& changes) {

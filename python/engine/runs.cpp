@@ -7,9 +7,11 @@
 #include <nanobind/stl/vector.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "docs.hpp"
 #include "engine.hpp"
+#include "sinew/error/input_error.hpp"
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"
@@ -30,44 +32,62 @@ class Watch {
     last_ = now;
     const nb::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) {
-      PyErr_Clear();  // told once the run has ended
-      interrupted = true;
+      error_.emplace();
       return false;
     }
     if (!progress_.is_none()) progress_(done, note);
     return true;
   }
-  bool interrupted = false;
+  /// Once the run has ended, with the GIL: whether Ctrl-C ended it; what else a signal's handler threw is thrown.
+  bool interrupted() {
+    if (!error_) return false;
+    if (!error_->matches(PyExc_KeyboardInterrupt)) throw nb::python_error(std::move(*error_));
+    error_.reset();
+    return true;
+  }
 
  private:
+  std::optional<nb::python_error> error_;
   nb::handle progress_;
   Clock::time_point last_ = Clock::now();
 };
 
+/// Lends the steps to a recording while its files are written.
+void write_views_of(Run& own, const std::filesystem::path& folder) {
+  io::Recording recording{runs::header_of(own.model->loaded), std::move(own.steps)};
+  const struct Back {
+    Run& own;
+    io::Recording& recording;
+    ~Back() { own.steps = std::move(recording.steps); }
+  } back{own, recording};
+  runs::write_views(folder, own.model->loaded, recording, own.summary);
+}
+
 std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start, const std::optional<std::string>& folder,
                               bool replace, nb::handle progress, int threads) {
   if (start.model != shared) throw nb::value_error("this is a state of another model");
+  require_threads(threads, 0);
   const Model& model = shared->model;
   auto all = std::make_shared<Run>(Run{shared, {}, {}});
   const State first = start.state();
   Watch watch(progress);
-  const nb::gil_scoped_release release;
-  std::optional<io::RecordingWriter> writer;
-  if (folder) writer = runs::begin_recording(shared->loaded, first, *folder, replace);
-  all->steps.push_back(runs::recorded(model, first, StepReport{}));
-  runs::Recorded recorded = runs::record(
-      model, first,
-      [&](io::RecordedStep step) {
-        if (writer) writer->append(step);
-        all->steps.push_back(std::move(step));
-      },
-      [&](const State& state, const StepReport&) { return watch.goes_on(state.time, when(model, state)); },
-      threads > 0 ? threads : runs::usual_threads());
-  all->summary = std::move(recorded.summary);
-  if (folder) {
-    io::Recording recording{runs::header_of(shared->loaded), all->steps};
-    runs::write_views(*folder, shared->loaded, recording, all->summary);
+  {
+    const nb::gil_scoped_release release;
+    std::optional<io::RecordingWriter> writer;
+    if (folder) writer = runs::begin_recording(shared->loaded, first, *folder, replace);
+    all->steps.push_back(runs::recorded(model, first, StepReport{}));
+    runs::Recorded recorded = runs::record(
+        model, first,
+        [&](io::RecordedStep step) {
+          if (writer) writer->append(step);
+          all->steps.push_back(std::move(step));
+        },
+        [&](const State& state, const StepReport&) { return watch.goes_on(state.time, when(model, state)); },
+        threads > 0 ? threads : runs::usual_threads());
+    all->summary = std::move(recorded.summary);
+    if (folder) write_views_of(*all, *folder);
   }
+  watch.interrupted();
   return all;
 }
 
@@ -76,12 +96,20 @@ std::shared_ptr<Run> read_run(const std::string& name) {
   const std::filesystem::path folder = name;
   const std::filesystem::path path = std::filesystem::is_directory(folder) ? runs::recording_path(folder) : folder;
   io::Recording recording = io::read_recording(path);
+  if (recording.steps.empty())
+    throw InputError({path.string(), 0, "", "", "holds no finished step", "run the scene again"});
   auto shared = std::make_shared<SharedModel>(runs::load_recorded(recording, path));
   auto all = std::make_shared<Run>(Run{shared, {}, std::move(recording.steps)});
   const bool whole = !all->steps.empty() && all->steps.back().time >= run_duration(shared->model.scene) * (1.0 - 1e-9);
   all->summary.end = whole ? "done" : "unfinished";
   all->summary.warnings = shared->model.warnings;
   return all;
+}
+
+/// The same run of a model that was built before.
+std::shared_ptr<Run> run_of(ModelPointer model, std::shared_ptr<Run> own) {
+  own->model = std::move(model);
+  return own;
 }
 
 std::size_t number_in(const Run& own, long i) {
@@ -91,11 +119,7 @@ std::size_t number_in(const Run& own, long i) {
 }
 
 LiveState state_of(const Run& own, long i) {
-  const Model& model = own.model->model;
-  LiveState live{own.model, std::make_shared<State>(unpack(model, own.steps[number_in(own, i)].state))};
-  live.command = sinew::command_of(model, *live.now);
-  live.goal = goal_at(model, live.now->time);
-  return live;
+  return LiveState::of(own.model, unpack(own.model->model, own.steps[number_in(own, i)].state));
 }
 
 template <class Of>
@@ -128,34 +152,91 @@ nb::tuple reduced(const Run& own) {
   for (const io::RecordedStep& step : own.steps)
     steps.append(nb::make_tuple(step.time, step.status, step.targets, step.newton, step.residual, step.violation,
                                 vector_of(step.signals), vector_of(step.state)));
+  const StepReport& failure = own.summary.failure;
   return nb::make_tuple(nb::module_::import_("sinew.running").attr("_run_again"),
-                        nb::make_tuple(own.model, own.summary.end, own.summary.warnings, own.summary.threads, steps));
+                        nb::make_tuple(own.model, own.summary.end, own.summary.warnings, own.summary.threads,
+                                       nb::make_tuple(static_cast<int>(failure.status), failure.detail, failure.newton,
+                                                      failure.halvings, failure.residual, failure.violation),
+                                       steps));
 }
 
 std::shared_ptr<Run> restored(ModelPointer model, const std::string& end, const std::vector<std::string>& warnings,
-                              int threads, const nb::typed<nb::list, nb::object>& steps) {
+                              int threads, const nb::typed<nb::tuple, nb::object, nb::ellipsis>& failure,
+                              const nb::typed<nb::list, nb::object>& steps) {
   auto all = std::make_shared<Run>(Run{model, {}, {}});
+  StepReport& failed = all->summary.failure;
+  failed.status = static_cast<Status>(nb::cast<int>(failure[0]));
+  failed.detail = nb::cast<std::string>(failure[1]);
+  failed.newton = nb::cast<int>(failure[2]);
+  failed.halvings = nb::cast<int>(failure[3]);
+  failed.residual = nb::cast<double>(failure[4]);
+  failed.violation = nb::cast<double>(failure[5]);
   all->summary.end = end;
   all->summary.warnings = warnings;
   all->summary.threads = threads;
+  const std::size_t signals = signal_names(model->model).size();
   for (const nb::handle own : steps) {
     all->steps.push_back({nb::cast<double>(own[0]), nb::cast<std::string>(own[1]), nb::cast<std::string>(own[2]),
                           nb::cast<std::uint32_t>(own[3]), nb::cast<double>(own[4]), nb::cast<double>(own[5]),
                           nb::cast<std::vector<double>>(own[6]), nb::cast<std::vector<double>>(own[7])});
+    if (all->steps.back().signals.size() != signals) throw nb::value_error("a run of another model");
   }
+  if (all->steps.empty()) throw nb::value_error("a run has at least its start");
   return all;
 }
 
-void save(const Run& own, const std::filesystem::path& folder, bool replace) {
+void save(Run& own, const std::filesystem::path& folder, bool replace) {
   const nb::gil_scoped_release release;
   const State first = unpack(own.model->model, own.steps.at(0).state);
   io::RecordingWriter writer = runs::begin_recording(own.model->loaded, first, folder, replace);
   for (std::size_t i = 1; i < own.steps.size(); ++i) writer.append(own.steps[i]);
-  runs::write_views(folder, own.model->loaded, {runs::header_of(own.model->loaded), own.steps}, own.summary);
+  write_views_of(own, folder);
 }
+
+/// Keeps the steps of a loop of one's own.
+class Recorder {
+ public:
+  Recorder(const LiveState& start, const std::optional<std::filesystem::path>& folder, bool replace)
+      : run_(std::make_shared<Run>(Run{start.model, runs::begin_summary(start.model->model, 1), {}})), folder_(folder) {
+    if (folder_) writer_ = runs::begin_recording(start.model->loaded, start.state(), *folder_, replace);
+    keep(start.state(), StepReport{});
+  }
+
+  void add(const LiveState& state, const FullReport& report) {
+    if (state.model != run_->model) throw nb::value_error("this is a state of another model");
+    if (!accepted(report.status)) {
+      run_->summary.failure = report;
+      return;
+    }
+    runs::add(run_->model->model, state.state(), report, run_->summary);
+    keep(state.state(), report);
+    if (writer_) writer_->append(run_->steps.back());
+  }
+
+  /// Writes the results, and goes on.
+  std::shared_ptr<Run> run() const {
+    auto all = std::make_shared<Run>(*run_);
+    const bool stopped = !accepted(all->summary.failure.status);
+    const State last = unpack(all->model->model, all->steps.back().state);
+    runs::conclude(all->model->model, last, stopped ? RunEnd::stopped : RunEnd::done, all->summary);
+    if (folder_) write_views_of(*all, *folder_);
+    return all;
+  }
+
+ private:
+  void keep(const State& state, const StepReport& report) {
+    run_->steps.push_back(runs::recorded(run_->model->model, state, report));
+  }
+  std::shared_ptr<Run> run_;
+  std::optional<std::filesystem::path> folder_;
+  std::optional<io::RecordingWriter> writer_;
+};
 
 /// Equilibria all over the limits of the sought motors, as rows of numbers.
 nb::tuple workspace(SharedModel& shared, int samples, nb::handle progress, int threads) {
+  require_threads(threads, 1);
+  if (samples < 1)
+    throw InputError({.path = "samples", .value = std::to_string(samples), .rule = "must be at least 1"});
   const Model& model = shared.model;
   std::vector<ReachSample> found;
   Watch watch(progress);
@@ -199,14 +280,31 @@ nb::tuple workspace(SharedModel& shared, int samples, nb::handle progress, int t
   std::vector<std::string> names;
   for (const int sought : model.sought) names.push_back(model.actuators[sought].name);
   return nb::make_tuple(names, columns, status, within, matrix_of(forces), matrix_of(positions), matrix_of(values),
-                        watch.interrupted);
+                        watch.interrupted());
 }
 
 }  // namespace
 
 void bind_runs(nb::module_& module) {
   nb::class_<Run>(module, "Run", "A run: every accepted step, with its state, in memory.")
-      .def("__len__", [](const Run& own) { return own.steps.size(); })
+      .def(
+          "__len__", [](const Run& own) { return own.steps.size(); }, "The states it has: one more than steps.")
+      .def(
+          "output",
+          [](const Run& own, const std::string& name) {
+            const Model& model = own.model->model;
+            const OutputModel& output = model.outputs[place_of(name, names_of(model.outputs), "outputs")];
+            Eigen::MatrixXd all;
+            for (std::size_t k = 0; k < own.steps.size(); ++k) {
+              const std::vector<double> now = kind_of(output).values(model, unpack(model, own.steps[k].state), output);
+              if (k == 0)
+                all.resize(static_cast<Eigen::Index>(own.steps.size()), static_cast<Eigen::Index>(now.size()));
+              all.row(static_cast<Eigen::Index>(k)) =
+                  Eigen::Map<const Eigen::RowVectorXd>(now.data(), static_cast<Eigen::Index>(now.size()));
+            }
+            return matrix_of(all);
+          },
+          "name"_a, "The numbers of an output over time, in SI: (states, 3) of a position.")
       .def_ro("model", &Run::model, "What was run.")
       .def("state", &state_of, "number"_a = -1, "The state after a step; 0: the start, -1: the end.")
       .def_prop_ro(
@@ -218,7 +316,9 @@ void bind_runs(nb::module_& module) {
       .def_prop_ro(
           "newton",
           [](const Run& own) {
-            return over_time(own, [](const auto& step) { return static_cast<double>(step.newton); });
+            std::vector<std::int32_t> all;
+            for (const io::RecordedStep& step : own.steps) all.push_back(static_cast<std::int32_t>(step.newton));
+            return vector_of(std::move(all));
           },
           "Linearisations of each step.")
       .def_prop_ro(
@@ -259,9 +359,21 @@ void bind_runs(nb::module_& module) {
       .def("__repr__", [](const Run& own) {
         return "<sinew.Run of " + std::to_string(own.steps.size() - 1) + " steps, " + own.summary.end + ">";
       });
+  nb::class_<Recorder>(module, "Recorder",
+                       "Keeps the steps of a loop of one's own, as a run: `add` each, take `run` at the end.")
+      .def(nb::init<const LiveState&, const std::optional<std::filesystem::path>&, bool>(), "state"_a,
+           "output"_a = nb::none(), nb::kw_only(), "replace"_a = false,
+           nb::sig("def __init__(self, state: State, output: str | os.PathLike[str] | None = None, *, replace: bool = "
+                   "False) -> None"),
+           "Begins with a state. output: a results folder, written as steps are added.")
+      .def("add", &Recorder::add, "state"_a, "report"_a,
+           nb::sig("def add(self, state: State, report: StepReport) -> None"),
+           "The state after a step, and what the step told. Of one that was not accepted the report alone is kept.")
+      .def("run", &Recorder::run, "All of it so far; writes tables and pictures, if there is a results folder.");
   module.def("simulate", &simulate, "model"_a, "state"_a, "folder"_a.none(), "replace"_a, "progress"_a.none(),
              "threads"_a, "Runs from a state to the end of the scene.");
   module.def("read_run", &read_run, "folder"_a, "A run from its results folder, or its recording.");
+  module.def("run_of", &run_of, "model"_a, "run"_a, "The run, of a model that is the same as its own.");
   module.def("workspace", &workspace, "model"_a, "samples"_a, "progress"_a.none(), "threads"_a,
              nb::sig("def workspace(model: Model, samples: int, progress: object | None, threads: int) -> "
                      "tuple[list[str], list[str], list[str], list[bool], numpy.typing.NDArray[numpy.float64], "

@@ -14,6 +14,13 @@
 
 namespace sinew::python {
 
+LiveState LiveState::of(ModelPointer model, State state) {
+  LiveState own{std::move(model), std::make_shared<State>(std::move(state))};
+  own.command = command_of(own.model->model, *own.now);
+  own.goal = goal_at(own.model->model, own.now->time);
+  return own;
+}
+
 const State& LiveState::state() const {
   if (busy) throw std::runtime_error("this state is being stepped by another thread; step a copy of it instead");
   return *now;
@@ -74,7 +81,10 @@ Numbers output_of(const LiveState& own, const std::string& name) {
 
 LiveState unpacked(ModelPointer model, const std::vector<double>& numbers, std::vector<double> actuators,
                    std::vector<double> loads, const std::vector<double>& goal) {
-  LiveState own{model, std::make_shared<State>(unpack(model->model, numbers))};
+  LiveState own = LiveState::of(model, unpack(model->model, numbers));
+  if (actuators.size() != own.command.actuators.size() || loads.size() != own.command.loads.size() ||
+      static_cast<Eigen::Index>(goal.size()) != own.goal.at.size())
+    throw nb::value_error("a state of another model");
   own.command = {std::move(actuators), std::move(loads)};
   own.goal.at = Eigen::Map<const Eigen::VectorXd>(goal.data(), static_cast<Eigen::Index>(goal.size()));
   return own;
@@ -250,12 +260,10 @@ void bind_states(nb::module_& module) {
       .def_static(
           "from_numbers",
           [](ModelPointer model, const std::vector<double>& numbers) {
-            LiveState own = unpacked(model, numbers, std::vector<double>(model->model.actuators.size()),
-                                     std::vector<double>(model->model.loads.size()), {});
-            own.goal = goal_at(model->model, own.now->time);
-            return own;
+            return LiveState::of(model, unpack(model->model, numbers));
           },
-          "model"_a, "numbers"_a, "The state of these `numbers`. Throws ValueError if they are not of this model.")
+          "model"_a, "numbers"_a,
+          "The state of these `numbers`, told what it obeys. Throws ValueError if they are not of this model.")
       .def(
           "__reduce__",
           [](const LiveState& own) {

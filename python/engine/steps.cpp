@@ -1,11 +1,17 @@
 // One step: told by the scene, or by whoever calls.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "docs.hpp"
 #include "engine.hpp"
+#include "sinew/error/input_error.hpp"
 #include "sinew/io/units.hpp"
 #include "sinew/sim/run.hpp"
 
@@ -27,29 +33,48 @@ io::Dimension told_in(const ActuatorModel& own) {
   return io::Dimension::number;
 }
 
+bool is_mapping(nb::handle given) {
+  if (nb::isinstance<nb::dict>(given)) return true;
+  if (nb::isinstance<nb::list>(given) || nb::isinstance<nb::tuple>(given)) return false;
+  return nb::isinstance(given, nb::module_::import_("collections.abc").attr("Mapping"));
+}
+
 /// Values by name, or all in order, over `numbers`.
 void take(nb::handle given, const std::vector<std::string>& names, const std::string& group,
           const std::function<io::Dimension(std::size_t)>& dimension, std::vector<double>& numbers) {
-  if (nb::isinstance<nb::dict>(given)) {
-    for (const auto& [key, value] : nb::borrow<nb::dict>(given)) {
-      const std::string name = nb::cast<std::string>(nb::str(key));
+  if (is_mapping(given)) {
+    const nb::object items = given.attr("items")();
+    for (const nb::handle item : nb::iter(items)) {
+      const std::string name = text_of(nb::str(item[0]));
       const std::size_t i = place_of(name, names, group);
-      numbers[i] = number_of(value, dimension(i), group + "." + name);
+      numbers[i] = number_of(item[1], dimension(i), group + "." + name);
     }
     return;
   }
+  if (nb::isinstance<nb::str>(given) || nb::isinstance<nb::bytes>(given) || PyAnySet_Check(given.ptr()) ||
+      !nb::hasattr(given, "__iter__"))
+    throw InputError({.path = group,
+                      .value = text_of(nb::repr(given)),
+                      .rule = "must be a dict by names, or a list of all in their order",
+                      .remedy = fmt::format("in this order: {}", fmt::join(names, ", "))});
   std::size_t i = 0;
   for (const nb::handle value : nb::iter(given)) {
     if (i < names.size()) numbers[i] = number_of(value, dimension(i), group + "." + names[i]);
-    ++i;
+    if (++i > names.size()) break;
   }
-  if (i != names.size())
-    throw nb::value_error(
-        (group + ": there are " + std::to_string(names.size()) + ", not " + std::to_string(i)).c_str());
+  if (i != names.size()) {
+    const Py_ssize_t size = PyObject_Size(given.ptr());
+    if (size < 0) PyErr_Clear();
+    throw InputError(
+        {.path = group,
+         .rule = fmt::format("there are {}, not {}", names.size(), size < 0 ? "more" : fmt::to_string(size)),
+         .remedy = fmt::format("in this order: {}", fmt::join(names, ", "))});
+  }
 }
 
+/// Over `goal`, which stays as it is where nothing is told.
 void take_goal(nb::handle given, const Model& model, Eigen::VectorXd& goal) {
-  if (!nb::isinstance<nb::dict>(given)) {
+  if (!is_mapping(given)) {
     std::vector<double> all(static_cast<std::size_t>(goal.size()));
     std::vector<std::string> places;
     for (const EffectorModel& own : model.effectors) {
@@ -61,8 +86,10 @@ void take_goal(nb::handle given, const Model& model, Eigen::VectorXd& goal) {
     return;
   }
   const std::vector<std::string> names = effector_names(model);
-  for (const auto& [key, value] : nb::borrow<nb::dict>(given)) {
-    const std::string name = nb::cast<std::string>(nb::str(key));
+  const nb::object items = given.attr("items")();
+  for (const nb::handle item : nb::iter(items)) {
+    const std::string name = text_of(nb::str(item[0]));
+    const nb::object value = item[1];
     const EffectorModel& own = model.effectors[place_of(name, names, "targets")];
     const Measure measure = measure_of(model, own);
     const io::Dimension dimension = std::string(measure.si) == "m"     ? io::Dimension::length
@@ -74,7 +101,7 @@ void take_goal(nb::handle given, const Model& model, Eigen::VectorXd& goal) {
       goal[own.first] = number_of(value, dimension, "targets." + name);
       continue;
     }
-    std::vector<double> numbers(static_cast<std::size_t>(own.size));
+    std::vector<double> numbers(goal.data() + own.first, goal.data() + own.first + own.size);
     const std::vector<std::string> axes = {"x", "y", "z"};
     take(
         value, axes, "targets." + name, [&](std::size_t) { return dimension; }, numbers);
@@ -83,7 +110,8 @@ void take_goal(nb::handle given, const Model& model, Eigen::VectorXd& goal) {
 }
 
 /// What the scene says at the end of the step, what was last told where it leaves that open, and what is told now.
-void command_of(const Model& model, nb::handle command, nb::handle loads, double time, Command& last, Command& told) {
+/// True if motors that are sought are told what to do, which targets cannot then.
+bool command_of(const Model& model, nb::handle command, nb::handle loads, double time, Command& last, Command& told) {
   command_at(model, time, told);
   for (std::size_t i = 0; i < told.actuators.size(); ++i) {
     if (std::holds_alternative<External>(model.actuators[i].drive)) told.actuators[i] = last.actuators[i];
@@ -91,29 +119,48 @@ void command_of(const Model& model, nb::handle command, nb::handle loads, double
   for (std::size_t i = 0; i < told.loads.size(); ++i) {
     if (std::holds_alternative<External>(model.loads[i].factor)) told.loads[i] = last.loads[i];
   }
-  if (!command.is_none())
+  bool forward = false;
+  if (!command.is_none()) {
+    for (const int sought : model.sought) told.actuators[sought] = NAN;
     take(
         command, names_of(model.actuators), "actuators", [&](std::size_t i) { return told_in(model.actuators[i]); },
         told.actuators);
+    const auto left = [&](int sought) { return std::isnan(told.actuators[sought]); };
+    const auto open = std::count_if(model.sought.begin(), model.sought.end(), left);
+    forward = !model.sought.empty() && open == 0;
+    if (open > 0 && open < static_cast<std::ptrdiff_t>(model.sought.size())) {
+      const int first = *std::find_if(model.sought.begin(), model.sought.end(), left);
+      throw InputError({.path = "actuators." + model.actuators[first].name,
+                        .rule = "is looked for, while others of the motors that are `inverse` are told what to do",
+                        .remedy = "tell all of them, and targets are left out in this step, or none"});
+    }
+    for (const int sought : model.sought) {
+      if (left(sought)) told.actuators[sought] = 0.0;  // not looked at
+    }
+  }
   if (!loads.is_none())
     take(
         loads, names_of(model.loads), "loads", [](std::size_t) { return io::Dimension::number; }, told.loads);
   last = told;
+  return forward;
 }
 
 FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::handle targets, nb::handle loads,
                 int threads, bool full) {
   const Model& model = shared.model;
   if (live.model.get() != &shared) throw nb::value_error("this is a state of another model");
-  if (threads < 1) throw nb::value_error("threads: at least 1");
-  State& state = live.own();
+  require_threads(threads, 1);
   if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static &&
       !(command.is_none() && targets.is_none() && loads.is_none()))
     throw nb::value_error("a static or modal analysis goes its own way: give no command, targets or loads");
   Command last = live.command, told;
   Goal goal;
-  const double time = static_cast<double>(state.grid + 1) * model.scene.time.step;
-  command_of(model, command, loads, time, last, told);
+  const double time = static_cast<double>(live.state().grid + 1) * model.scene.time.step;
+  const bool forward = command_of(model, command, loads, time, last, told);
+  if (forward && !targets.is_none())
+    throw InputError({.path = "targets",
+                      .rule = "cannot be given together with commands of the motors that are to reach them",
+                      .remedy = "leave one of the two out"});
   if (!model.effectors.empty()) {
     goal_at(model, time, goal);
     for (std::size_t i = 0; i < model.effectors.size(); ++i) {
@@ -127,6 +174,8 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
     take_goal(targets, model, goal.at);
   }
   FullReport report;
+  // From here on nothing of Python's runs that could look at the state: what is told has been taken.
+  State& state = live.own();
   {
     live.busy = true;
     const struct Free {
@@ -136,7 +185,7 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
     const nb::gil_scoped_release release;
     Workspaces::Loan workspace = shared.workspaces.lend(threads);
     const bool grid = model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static;
-    const Told by{grid ? &told : nullptr, model.effectors.empty() ? nullptr : &goal};
+    const Told by{grid ? &told : nullptr, model.effectors.empty() ? nullptr : &goal, forward};
     const long before = state.grid;
     StageTimes times;
     do {
@@ -145,7 +194,7 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
       times += report.times;
     } while (grid && accepted(report.status) && state.grid == before);
     report.times = times;
-    if (!model.effectors.empty()) report.targets = describe(model, report.aim);
+    if (!model.effectors.empty() && !forward) report.targets = describe(model, report.aim);
   }
   live.command = std::move(last);
   live.goal = std::move(goal);
@@ -206,7 +255,8 @@ void bind_steps(nb::module_& module) {
       "Advances a state, in place, to the next point of the scene's time grid.\n\n"
       "command: what motors are told for the end of the step, in N, m, N m or rad or as text with a unit: a dict "
       "by names, or all of them in the order of `model.actuators`; None, and motors that are not named, obey the "
-      "scene, and those driven from outside what they were last told.\n"
+      "scene, and those driven from outside what they were last told. Motors that are `inverse` look for their own "
+      "command; if all of them are told one they obey it, and targets are left out in this step.\n"
       "targets: the same for outputs with a target, {'tip': [0.1, 0, 0.02]} in SI. loads: the same for loads' "
       "factors.\n"
       "threads: that share the work of the step; the result has the same bits for any number.\n"

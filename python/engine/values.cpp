@@ -4,12 +4,31 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
 #include "engine.hpp"
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/fields.hpp"
 #include "sinew/io/nearest.hpp"
+#include "sinew/threads/crew.hpp"
 
 namespace sinew::python {
+
+std::string text_of(nb::handle value) {
+  Py_ssize_t size = 0;
+  const char* text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
+  if (!text) throw nb::python_error();
+  return {text, static_cast<std::size_t>(size)};
+}
+
+void require_threads(int threads, int least) {
+  if (threads < least || threads > threads::Crew::kMost)
+    throw InputError({.path = "threads",
+                      .value = std::to_string(threads),
+                      .rule = fmt::format("must be from {} to {}", least, threads::Crew::kMost)});
+}
 
 io::Node node_of(nb::handle value, int depth) {
   if (depth > io::deepest_document)
@@ -19,7 +38,7 @@ io::Node node_of(nb::handle value, int depth) {
   if (nb::isinstance<nb::dict>(value)) {
     node.kind = io::Node::Kind::map;
     for (const auto& [key, own] : nb::borrow<nb::dict>(value))
-      node.entries.push_back({nb::cast<std::string>(nb::str(key)), 0, node_of(own, depth + 1)});
+      node.entries.push_back({text_of(nb::str(key)), 0, node_of(own, depth + 1)});
     return node;
   }
   if (nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value)) {
@@ -29,8 +48,8 @@ io::Node node_of(nb::handle value, int depth) {
   }
   node.kind = io::Node::Kind::scalar;
   node.text = nb::isinstance<nb::bool_>(value)    ? (nb::cast<bool>(value) ? "true" : "false")
-              : nb::isinstance<nb::float_>(value) ? nb::cast<std::string>(nb::repr(value))
-                                                  : nb::cast<std::string>(nb::str(value));
+              : nb::isinstance<nb::float_>(value) ? text_of(nb::repr(value))
+                                                  : text_of(nb::str(value));
   return node;
 }
 
@@ -51,10 +70,18 @@ nb::object object_of(const io::Node& node) {
     case io::Node::Kind::scalar:
       break;
   }
-  const io::Json plain = io::to_json(node);
-  if (plain.is_boolean()) return nb::cast(plain.get<bool>());
-  if (plain.is_number_integer()) return nb::cast(plain.get<long>());
-  if (plain.is_number()) return nb::cast(plain.get<double>());
+  // Numbers only where Python writes them the same: a name such as 007 or 1e5 stays what it is.
+  if (node.text == "true" || node.text == "false") return nb::cast(node.text == "true");
+  const char* const end = node.text.data() + node.text.size();
+  const auto same = [&node](const nb::object& value) { return text_of(nb::repr(value)) == node.text; };
+  std::int64_t whole = 0;
+  if (const auto read = std::from_chars(node.text.data(), end, whole); read.ec == std::errc() && read.ptr == end) {
+    if (nb::object value = nb::cast(whole); same(value)) return value;
+  }
+  double real = 0.0;
+  if (const auto read = std::from_chars(node.text.data(), end, real); read.ec == std::errc() && read.ptr == end) {
+    if (nb::object value = nb::cast(real); same(value)) return value;
+  }
   return nb::cast(node.text);
 }
 
@@ -68,6 +95,10 @@ Numbers vector_of(std::vector<double> numbers) {
   auto own = std::make_shared<const std::vector<double>>(std::move(numbers));
   return numbers_of(own->data(), static_cast<Eigen::Index>(own->size()), own);
 }
+WholeNumbers vector_of(std::vector<std::int32_t> numbers) {
+  auto own = std::make_shared<const std::vector<std::int32_t>>(std::move(numbers));
+  return {{own->data(), {own->size()}, keep(own)}};
+}
 Numbers vector_of(const Eigen::VectorXd& numbers) {
   return vector_of(std::vector<double>(numbers.begin(), numbers.end()));
 }
@@ -76,15 +107,20 @@ double number_of(nb::handle value, io::Dimension dimension, const std::string& p
   double number = 0.0;
   if (nb::isinstance<nb::str>(value)) {
     try {
-      number = io::parse_quantity(nb::cast<std::string>(value), dimension);
+      number = io::parse_quantity(text_of(value), dimension);
     } catch (const InputError& error) {
       InputFault fault = error.fault();
       fault.path = path;
       throw InputError(fault);
     }
   } else {
+    if (PyComplex_Check(value.ptr())) throw nb::type_error((path + ": must be a real number").c_str());
     number = PyFloat_AsDouble(value.ptr());
-    if (number == -1.0 && PyErr_Occurred()) throw nb::python_error();
+    if (number == -1.0 && PyErr_Occurred()) {
+      PyErr_Clear();
+      throw nb::type_error(
+          fmt::format("{}: must be a number, or text with a unit, not {}", path, text_of(nb::repr(value))).c_str());
+    }
   }
   if (!std::isfinite(number))
     throw InputError({.path = path, .value = fmt::format("{}", number), .rule = "must be finite"});

@@ -28,16 +28,20 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
     scene: its motors that are to be acted on are `external`.
     actions: least and most of what each of these motors is told, by their names, in SI. An action is a number between
     -1 (least) and 1 (most) for each.
-    observed: outputs whose numbers are observed, in SI, followed by the displacements and forces of the motors.
+    observed: outputs whose numbers are observed, in SI, followed by what the last action changed of them, and by the
+    displacements and forces of the motors.
     rate: how far commands may go in one action, as a part of their range; 1 does not limit them.
     steps: of the scene that an action lasts; commands go there in as many parts.
     horizon: actions until an episode is truncated.
 
-    A task overrides `begin`, `extra` and `reward`. Where a step cannot be made the episode is truncated, and
-    `info["status"]` says why.
+    A task overrides `begin`, `extra` and `reward`. Where a step cannot be made the episode is terminated, and
+    `info["status"]` says why; its reward is then `worst` for every action that was left, so that nothing is gained by
+    breaking the robot.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 20}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
+    worst = -10.0
+    """What an action is worth at the least."""
 
     def __init__(
         self,
@@ -57,6 +61,13 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
             raise ValueError(f"actions: no motor {', '.join(unknown)}; known: {', '.join(self.model.actuators)}")
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode: must be 'rgb_array' or None, not {render_mode!r}")
+        if isinstance(observed, str):
+            raise ValueError("observed: must be a list of outputs")
+        for name, own in actions.items():
+            if not (np.isfinite(own).all() and own[0] < own[1]):
+                raise ValueError(f"actions: {name} = {own}: must be the least and the most that it is told, in SI")
+        if not (0.0 < rate <= 1.0) or steps < 1 or horizon < 1:
+            raise ValueError("rate must be above 0 and at most 1; steps and horizon at least 1")
         self.motors = [self.model.actuators.index(name) for name in self.names]
         self.least = np.array([own[0] for own in actions.values()], dtype=np.float64)
         self.most = np.array([own[1] for own in actions.values()], dtype=np.float64)
@@ -68,6 +79,8 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
         self._start = self.state.copy()
         self._command = np.zeros(len(self.names))
         self._taken = 0
+        self._options: dict[str, Any] = {}
+        self._before = self._outputs()
         self.begin(np.random.default_rng(0))
         size = len(self.observe())
         self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (size,), np.float64)
@@ -75,7 +88,7 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
     # What a task is made of.
 
     def begin(self, random: np.random.Generator) -> None:
-        """Makes up an episode: the goal, say."""
+        """Makes up an episode: the goal, say. `options` of `reset` are in `self._options`."""
 
     def extra(self) -> Array:
         """What is observed besides outputs and motors."""
@@ -87,11 +100,14 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
 
     # Gymnasium's interface.
 
+    def _outputs(self) -> Array:
+        return np.concatenate([np.empty(0), *(self.state.output(name) for name in self.observed)])
+
     def observe(self) -> Array:
         """All that is observed, in SI."""
-        outputs = [self.state.output(name) for name in self.observed]
+        outputs = self._outputs()
         motors = [self.state.displacements[self.motors], self.state.forces[self.motors]]
-        return np.concatenate([*outputs, *motors, self.extra()])
+        return np.concatenate([outputs, outputs - self._before, *motors, self.extra()])
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -100,6 +116,8 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
         self.state = self._start.copy()
         self._command = np.clip(np.zeros(len(self.names)), self.least, self.most)
         self._taken = 0
+        self._before = self._outputs()
+        self._options = dict(options or {})
         self.begin(self.np_random)
         return self.observe(), {"status": "rest"}
 
@@ -112,6 +130,7 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
         goal = self.least + (np.clip(wanted, -1.0, 1.0) + 1.0) / 2.0 * (self.most - self.least)
         reach = self.rate * (self.most - self.least)
         before, self._command = self._command, np.clip(goal, self._command - reach, self._command + reach)
+        self._before = self._outputs()
         status = "rest"
         failed = False
         for part in range(1, self.steps + 1):
@@ -122,8 +141,9 @@ class SinewEnv(gymnasium.Env[Array, npt.NDArray[np.float32]]):
                 break
         self._taken += 1
         value, done = self.reward()
-        truncated = failed or self._taken >= self.horizon
-        return self.observe(), value, done, truncated, {"status": status, "success": done}
+        if failed:
+            return self.observe(), self.worst * (self.horizon - self._taken + 1), True, False, {"status": status, "success": False}
+        return self.observe(), value, done, self._taken >= self.horizon, {"status": status, "success": done}
 
     def render(self) -> npt.NDArray[np.uint8] | None:
         """A picture of the state."""
@@ -182,7 +202,8 @@ def trunk_scene(cells: tuple[int, int, int] = (8, 2, 2), sections: int = 10) -> 
 class ReachEnv(SinewEnv):
     """A trunk of four cables, each pulling with up to 5 N, brings its tip to a point on what it can reach.
 
-    Observed: the tip [m], the motors, then the point [m]. The reward of an action is minus the distance in units of
+    Observed: the tip [m] and its change, the motors, then the point [m], which `reset(options={"goal": [x, y, z]})` sets.
+    The reward of an action is minus the distance in units of
     20 mm, and 1 more within 2 mm. `info["distance"]` [m] tells it."""
 
     def __init__(self, *, most: float = 5.0, render_mode: str | None = None, scene: SceneLike | None = None) -> None:
@@ -197,6 +218,9 @@ class ReachEnv(SinewEnv):
         )
 
     def begin(self, random: np.random.Generator) -> None:
+        if "goal" in self._options:
+            self.goal = np.array(self._options["goal"], dtype=np.float64).reshape(3)
+            return
         angle, aside = random.uniform(0.0, 2.0 * np.pi), 0.05 * np.sqrt(random.uniform())
         self.goal = np.array(
             [0.195 - 0.6 * aside**2 / 0.195, aside * np.cos(angle), aside * np.sin(angle)]  # about the arc of a bar
@@ -287,7 +311,8 @@ class GraspEnv(SinewEnv):
     """Three fingers pick up a cube: the hand comes down, waits and goes up by itself; actions draw the fingers' cables, with
     up to 20 N each.
 
-    Observed: the cube [m], the forces between it and each finger [N], the motors. The reward of an action is the
+    Observed: the cube [m], what is between it and each finger, the changes of these, the motors, and how much of the
+    episode is over, by which the hand moves. The reward of an action is the
     height of the cube above the floor in units of 50 mm, less a hundredth of the squared commands in units of 10 N;
     an episode in which the cube is above 30 mm at the end was a success."""
 
@@ -300,6 +325,11 @@ class GraspEnv(SinewEnv):
             steps=4,
             render_mode=render_mode,
         )
+
+    worst = -0.2
+
+    def extra(self) -> Array:
+        return np.array([self._taken / self.horizon])
 
     def height(self) -> float:
         """[m] of the cube above the floor."""
@@ -319,6 +349,8 @@ class ThreadVectorEnv(gymnasium.vector.SyncVectorEnv):
     """Environments beside each other whose steps are made by as many threads."""
 
     def __init__(self, make: Sequence[Callable[[], gymnasium.Env[Any, Any]]], threads: int | None = None, **keywords: Any):
+        if not make:
+            raise ValueError("there is no environment to be made")
         super().__init__(make, **keywords)
         self._pool = ThreadPoolExecutor(threads or len(self.envs))
         self.envs = [_Ahead(env) for env in self.envs]

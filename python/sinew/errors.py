@@ -39,6 +39,9 @@ class StepFailed(RuntimeError):
         super().__init__(message)
         self.run = run
 
+    def __reduce__(self) -> tuple[type[StepFailed], tuple[str, object]]:
+        return StepFailed, (str(self), self.run)
+
 
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C stopped a run; `run` holds all that came before it."""
@@ -46,3 +49,6 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, message: str, run: object) -> None:
         super().__init__(message)
         self.run = run
+
+    def __reduce__(self) -> tuple[type[Interrupted], tuple[str, object]]:
+        return Interrupted, (str(self), self.run)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
-import tempfile
-import weakref
+import warnings
 from collections.abc import Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeGuard
 
@@ -26,6 +27,17 @@ _GMSH = {
     "tetra10": 11,
     "hexahedron": 5,
 }
+_NODES = {
+    "vertex": 1,
+    "line": 2,
+    "line3": 3,
+    "triangle": 3,
+    "triangle6": 6,
+    "quad": 4,
+    "tetra": 4,
+    "tetra10": 10,
+    "hexahedron": 8,
+}
 _DIMENSION = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "quad": 2}
 
 
@@ -34,18 +46,8 @@ def is_meshio(value: object) -> TypeGuard[meshio.Mesh]:
     return type(value).__module__.split(".")[0] == "meshio" and hasattr(value, "cells_dict")
 
 
-_of_meshio: weakref.WeakKeyDictionary[Any, Mesh] = weakref.WeakKeyDictionary()
-
-
-def own_of(mesh: meshio.Mesh) -> Mesh:
-    """A mesh of meshio as one of ours, which lives as long."""
-    if mesh not in _of_meshio:
-        _of_meshio[mesh] = Mesh.from_meshio(mesh)
-    return _of_meshio[mesh]
-
-
 class Mesh:
-    """A mesh given as arrays, to be used where a scene names a file.
+    """A mesh given as arrays, to be used where a scene names a file. It is a value: its arrays are read only.
 
     points: positions of the nodes, (nodes, 3), in metres unless the scene gives a scale.
     cells: nodes of the cells of each kind under meshio's names, {"tetra": (cells, 4)}; also tetra10, hexahedron, and
@@ -62,25 +64,35 @@ class Mesh:
         self.points: npt.NDArray[np.float64] = np.array(points, dtype=np.float64)
         if self.points.ndim != 2 or self.points.shape[1] != 3:
             raise ValueError(f"points: must have the shape (nodes, 3), not {self.points.shape}")
+        if not np.isfinite(self.points).all():
+            raise ValueError("points: must be finite")
         self.cells: dict[str, npt.NDArray[np.int64]] = {}
         for kind, nodes in cells.items():
             if kind not in _GMSH:
                 raise ValueError(f"cells: {kind!r} is not known here; known: {', '.join(_GMSH)}")
             own = np.array(nodes)
-            if own.ndim != 2 or not np.issubdtype(own.dtype, np.integer):
-                raise ValueError(f"cells[{kind!r}]: must be whole numbers with the shape (cells, nodes of a cell)")
+            if own.ndim != 2 or own.shape[1] != _NODES[kind] or not np.issubdtype(own.dtype, np.integer):
+                raise ValueError(f"cells[{kind!r}]: must be whole numbers with the shape (cells, {_NODES[kind]})")
             if own.size > 0 and (own.min() < 0 or own.max() >= len(self.points)):
                 raise ValueError(f"cells[{kind!r}]: node {own.min() if own.min() < 0 else own.max()} does not exist")
             self.cells[kind] = own.astype(np.int64)
         self.groups: dict[str, dict[str, npt.NDArray[np.int64]]] = {}
         for name, members in (groups or {}).items():
+            if not name or not name.isprintable() or '"' in name:
+                raise ValueError(f"groups: {name!r} is no name that a mesh file can hold")
             self.groups[name] = {}
             for kind, numbers in members.items():
-                chosen = np.array(numbers, dtype=np.int64).ravel()
+                given = np.array(numbers).ravel()
+                if given.dtype == np.bool_ and kind in self.cells and len(given) == len(self.cells[kind]):
+                    given = np.flatnonzero(given)
+                if given.size > 0 and not np.issubdtype(given.dtype, np.integer):
+                    raise ValueError(f"groups[{name!r}]: must be numbers of cells, or a mask of all of the kind {kind!r}")
+                chosen = given.astype(np.int64)
                 if kind not in self.cells or (chosen.size > 0 and not 0 <= chosen.min() <= chosen.max() < len(self.cells[kind])):
                     raise ValueError(f"groups[{name!r}]: there are no such cells of the kind {kind!r}")
                 self.groups[name][kind] = chosen
-        self._file: Path | None = None
+        for array in (self.points, *self.cells.values(), *(own for group in self.groups.values() for own in group.values())):
+            array.setflags(write=False)
 
     @classmethod
     def bar(
@@ -91,7 +103,7 @@ class Mesh:
 
         size: length, width and height [m]. cells: their number along each. Groups: "start" and "end", its end faces."""
         nx, ny, nz = cells
-        if min(cells) < 1 or min(size) <= 0 or taper <= 0:
+        if min(cells) < 1 or not all(0 < own < np.inf for own in (*size, taper)):
             raise ValueError("bar: needs a size above 0 and at least one cell each way")
         t, y, z = np.meshgrid(*(np.linspace(0.0, 1.0, n + 1) for n in cells), indexing="ij")
         across = 1.0 + (taper - 1.0) * t
@@ -119,7 +131,10 @@ class Mesh:
     @classmethod
     def from_meshio(cls, mesh: meshio.Mesh) -> Mesh:
         """A mesh of meshio: `sinew.Mesh.from_meshio(meshio.read("arm.inp"))`. Its cell sets become groups; cells of
-        other kinds are left out."""
+        other kinds are left out, with a warning."""
+        left_out = sorted(set(mesh.cells_dict) - set(_GMSH))
+        if left_out:
+            warnings.warn(f"cells that Sinew does not know are left out: {', '.join(left_out)}", stacklevel=2)
         points = np.zeros((len(mesh.points), 3))
         points[:, : mesh.points.shape[1]] = mesh.points
         cells = {kind: nodes for kind, nodes in mesh.cells_dict.items() if kind in _GMSH}
@@ -140,6 +155,11 @@ class Mesh:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a file of Gmsh (2.2, ASCII), with every bit of the positions."""
+        Path(path).write_bytes(self._content)
+
+    @cached_property
+    def _content(self) -> bytes:
+        """The file of Gmsh."""
         tags = {name: number for number, name in enumerate(self.groups, 1)}
         lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]
         named = [
@@ -164,23 +184,24 @@ class Mesh:
         lines.append(str(len(elements)))
         lines += [f"{i} {element}" for i, element in enumerate(elements, 1)]
         lines.append("$EndElements")
-        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return ("\n".join(lines) + "\n").encode()
 
-    def __fspath__(self) -> str:
-        """A file that holds it, until the mesh is gone."""
-        if self._file is None:
-            handle, name = tempfile.mkstemp(prefix="sinew-", suffix=".msh")
-            os.close(handle)
-            self._file = Path(name)
-            weakref.finalize(self, self._file.unlink, missing_ok=True)
-            self.save(self._file)
-        return str(self._file)
+    @cached_property
+    def _name(self) -> str:
+        """What scenes call it: other content, another name."""
+        return f"mesh-{hashlib.sha256(self._content).hexdigest()[:16]}.msh"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mesh) and self._content == other._content
+
+    def __hash__(self) -> int:
+        return hash(self._name)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"points": self.points, "cells": self.cells, "groups": self.groups, "_file": None}
+        return {"points": self.points, "cells": self.cells, "groups": self.groups}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
+        self.__init__(**state)  # type: ignore[misc]
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{len(nodes)} {kind}" for kind, nodes in self.cells.items())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sinew import _engine
-from sinew.mesh import Mesh, is_meshio, own_of
+from sinew.errors import InputError
+from sinew.mesh import Mesh, is_meshio
 
 Quantity = float | str
 """A number in SI, or text with a unit: 0.012 or "12 mm"."""
@@ -27,11 +29,21 @@ P = TypeVar("P", bound="Part")
 
 
 def plain(value: Any) -> Any:
-    """Parts, arrays, paths and NumPy's numbers as dicts, lists, strings and Python's."""
+    """Parts, arrays, paths and NumPy's numbers as dicts, lists, strings and Python's; meshes by their names."""
+    return _plain(value, {})
+
+
+def _plain(value: Any, meshes: dict[str, bytes]) -> Any:
+    """Takes in the meshes that it meets."""
     if isinstance(value, Part):
-        return value.tree()
+        return value._tree(meshes)
     if isinstance(value, Mapping):
-        return {str(key): plain(own) for key, own in value.items()}
+        return {str(key): _plain(own, meshes) for key, own in value.items()}
+    if is_meshio(value):
+        value = Mesh.from_meshio(value)
+    if isinstance(value, Mesh):
+        meshes[value._name] = value._content
+        return value._name
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, np.generic):
@@ -40,10 +52,8 @@ def plain(value: Any) -> Any:
         return value
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    if is_meshio(value):
-        return os.fspath(own_of(value))
-    if isinstance(value, Sequence):
-        return [plain(own) for own in value]
+    if isinstance(value, Sequence) and not isinstance(value, bytes):
+        return [_plain(own, meshes) for own in value]
     return value
 
 
@@ -56,17 +66,29 @@ class Part:
 
     def tree(self) -> dict[str, Any]:
         """As a scene file would have it, in dicts and lists."""
+        return self._tree({})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        known = [own.name for own in dataclasses.fields(self)]  # type: ignore[arg-type]
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"; did you mean `{near[0]}`?" if near else f"; known: {', '.join(known)}"
+            raise AttributeError(f"{type(self).__name__} has no key {name!r}{hint}")
+        object.__setattr__(self, name, value)
+
+    def _tree(self, meshes: dict[str, bytes]) -> dict[str, Any]:
         assert dataclasses.is_dataclass(self)
         tree: dict[str, Any] = {}
         for own in dataclasses.fields(self):
             value = getattr(self, own.name)
-            if value is not None and not own.metadata.get("not_a_key"):
-                tree[own.name.rstrip("_")] = plain(value)
+            left_out = value is None or (own.default_factory is not dataclasses.MISSING and not value)
+            if not left_out and not own.metadata.get("not_a_key"):
+                tree[own.name.rstrip("_")] = _plain(value, meshes)
         return {self._kind: tree} if self._kind else tree
 
     @classmethod
     def from_tree(cls: type[P], tree: Tree) -> P:
-        """The other way round. Throws TypeError for a key that there is not."""
+        """The other way round. Throws InputError for a key that there is not."""
         if cls._kind and set(tree) == {cls._kind}:
             inner: Tree = tree[cls._kind]
             tree = inner
@@ -74,7 +96,10 @@ class Part:
         values: dict[str, Any] = {}
         for key, value in tree.items():
             if key not in known:
-                raise TypeError(f"{cls.__name__} has no key {key!r}; known: {', '.join(known)}")
+                near = difflib.get_close_matches(key, known, 1)
+                rule = f"{cls.__name__} has no such key"
+                remedy = (f"did you mean `{near[0]}`? " if near else "") + f"known: {', '.join(known)}"
+                raise InputError(f"{key}: {rule}\n    {remedy}", path=key, rule=rule, remedy=remedy)
             own = known[key]
             kinds = own.metadata.get("kinds", ())
             if own.metadata.get("named") and isinstance(value, Mapping):
@@ -111,12 +136,22 @@ class SceneMethods(Part):
 
         changes: as `--set` of the program, {"rods.cable.sections": 30}. Throws InputError with file and line."""
         read = cls.from_tree(_engine.read_tree(os.fspath(file), assignments(changes)))
-        read.folder = Path(file).parent  # type: ignore[attr-defined]
+        read.folder = Path(file).parent
         return read
 
     def to_yaml(self) -> str:
-        """The scene as text that `sinew run` takes. Meshes given as arrays are named by files that vanish with them."""
+        """The scene as text that `sinew run` takes. It names files; meshes given as arrays `save` puts beside it."""
         return _engine.write_tree(self.tree())
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the scene as a file that `sinew run` takes, and meshes given as arrays beside it. Other files that it
+        names are looked for from the folder of the file."""
+        meshes: dict[str, bytes] = {}
+        text = _engine.write_tree(self._tree(meshes))
+        path = Path(file)
+        path.write_text(text, encoding="utf-8")
+        for name, content in meshes.items():
+            (path.parent / name).write_bytes(content)
 
     def check(self) -> None:
         """Reads the scene without building it. Throws InputError at the first fault."""

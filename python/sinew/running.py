@@ -18,8 +18,7 @@ import numpy.typing as npt
 from sinew import _engine
 from sinew._engine import Model, Run, State
 from sinew.errors import InputError, Interrupted, StepFailed
-from sinew.mesh import Mesh, is_meshio, own_of
-from sinew.parts import Part, assignments
+from sinew.parts import assignments
 from sinew.scene import Scene
 
 SceneLike = Scene | str | os.PathLike[str] | Mapping[str, Any] | Model
@@ -31,19 +30,23 @@ Changes = Mapping[str, Any] | Sequence[str]
 def build(scene: SceneLike, changes: Changes = ()) -> Model:
     """Judges a scene and makes a model of it.
 
-    changes: made to the scene of a file before. Throws InputError at the first fault."""
+    changes: made to the scene before, by the places of values; the scene itself stays as it is. Throws InputError at the
+    first fault."""
     if isinstance(scene, Model):
         if changes:
             raise ValueError("changes: a model cannot be changed any more, only a scene")
         return scene
     if isinstance(scene, str | os.PathLike):
         return _known(_engine.build_file(os.fspath(scene), assignments(changes)))
+    if not isinstance(scene, Scene | Mapping):
+        raise TypeError(f"a scene is a sinew.Scene, a file's name, a dict or a model, not {type(scene).__name__}")
     own = scene if isinstance(scene, Scene) else Scene.from_tree(scene)
-    if changes:
-        raise ValueError("changes: set the scene's attributes instead; only scenes in files are changed by places")
-    model = _engine.build(own.tree(), os.fspath(own.folder))
-    setattr(model, "_scene", own)  # its meshes, if they are arrays, live as long, and it can be built again
-    return _known(model)
+    meshes: dict[str, bytes] = {}
+    try:
+        tree = own._tree(meshes)
+    except RecursionError as error:
+        raise InputError("the scene is nested without end: a part of it holds itself") from error
+    return _known(_engine.build(tree, os.fspath(own.folder), assignments(changes), meshes))
 
 
 _models: WeakValueDictionary[str, Model] = WeakValueDictionary()
@@ -51,25 +54,22 @@ _models: WeakValueDictionary[str, Model] = WeakValueDictionary()
 
 
 def _known(model: Model) -> Model:
-    _models[model.inputs_hash] = model
-    return model
+    """The model, or the same one if it was built before: its states are then those of both."""
+    return _models.setdefault(model.inputs_hash + os.path.abspath(model.folder), model)
 
 
 def _reduced_model(model: Model) -> tuple[Any, ...]:
-    scene = getattr(model, "_scene", None)
-    return _built_again, (model.inputs_hash, scene or model.text, os.fspath(model.folder))
+    return _built_again, (model.inputs_hash, model.text, os.path.abspath(model.folder), model.meshes)
 
 
-def _built_again(inputs_hash: str, scene: Scene | str, folder: str) -> Model:
+def _built_again(inputs_hash: str, text: str, folder: str, meshes: dict[str, bytes]) -> Model:
     """The model of a pickle: the one that is there, or a new one."""
-    if inputs_hash in _models:
-        return _models[inputs_hash]
-    if isinstance(scene, Scene):
-        return build(scene)
-    model = _engine.build_text(scene, folder)
+    model = _known(_engine.build_text(text, folder, meshes))
     if model.inputs_hash != inputs_hash:
-        raise InputError(f"the scene's files in {folder} are not the ones that this was made with")
-    return _known(model)
+        rule = "is not the folder that this was made in: the files that the scene names are others by now"
+        remedy = "restore them, or build the scene again"
+        raise InputError(f"{folder}: {rule}\n    {remedy}", file=folder, rule=rule, remedy=remedy)
+    return model
 
 
 def _state_again(*parts: Any) -> State:
@@ -86,6 +86,7 @@ def simulate(
     *,
     changes: Changes = (),
     state: State | None = None,
+    commands: str | os.PathLike[str] | None = None,
     replace: bool = False,
     progress: bool | None = None,
     threads: int = 0,
@@ -96,13 +97,18 @@ def simulate(
     output: a results folder, written as the run goes on, as `sinew run -o` does; none if left out. `replace` one that
     is there.
     state: where to start, the state at t = 0 if left out.
+    commands: a table, such as commands.csv of a run with targets, that drives the motors of a scene file, as `sinew run
+    --commands`; targets are left out then.
     progress: a bar; if left out, one where the error output is a terminal.
     threads: that share the work of a step, 0: two if the machine has them. Results are the same for any number.
     check: throws StepFailed where a step cannot be made; if False, look at `run.end`.
 
     Ctrl-C throws Interrupted, a KeyboardInterrupt; like StepFailed it has the `run` up to there."""
-    if output is not None and isinstance(scene, Scene | Mapping):
-        scene = _with_files(scene, Path(output), replace)
+    if commands is not None:
+        if not isinstance(scene, str | os.PathLike):
+            raise ValueError("commands: only the motors of a scene in a file are driven by a table")
+        changes = assignments(changes)
+        changes += _engine.driven_by(os.fspath(commands), os.fspath(scene), changes)
     model = build(scene, changes)
     name = model.title or (Path(scene).stem if isinstance(scene, str | os.PathLike) else "sinew")
     with _bar(name, model.duration, progress) as tell:
@@ -114,6 +120,8 @@ def simulate(
             tell,
             threads,
         )
+        if tell and run.end == "done":
+            tell(model.duration, "done")
     if run.end == "interrupted":
         raise Interrupted(f"interrupted at t = {run.time[-1]:.6g} s; what was done is in the exception's `run`", run)
     if check and run.end == "numerical_stop":
@@ -121,40 +129,11 @@ def simulate(
     return run
 
 
-def _with_files(scene: Scene | Mapping[str, Any], output: Path, replace: bool) -> Scene:
-    """The scene with its meshes, if they are arrays, in files that stay beside the results."""
-    own = copy(scene) if isinstance(scene, Scene) else Scene.from_tree(scene)
-    if (output / "run.sinew").exists() and not replace:
-        return own  # it will be refused
-    count = 0
-
-    def filed(value: Any) -> Any:
-        nonlocal count
-        if is_meshio(value):
-            value = own_of(value)
-        if isinstance(value, Mesh):
-            count += 1
-            file = (output / "meshes" / f"{count}.msh").resolve()
-            file.parent.mkdir(parents=True, exist_ok=True)
-            value.save(file)
-            return str(file)
-        if isinstance(value, Part):
-            new = copy(value)
-            for key, inner in vars(value).items():
-                setattr(new, key, filed(inner))
-            return new
-        if isinstance(value, Mapping):
-            return {key: filed(inner) for key, inner in value.items()}
-        return [filed(inner) for inner in value] if isinstance(value, list) else value
-
-    filed_scene: Scene = filed(own)
-    return filed_scene
-
-
 def read_run(folder: str | os.PathLike[str]) -> Run:
     """A run from its results folder, or from its recording `run.sinew`. Throws InputError where its scene's files are
     others by now."""
-    return _engine.read_run(os.fspath(folder))
+    run = _engine.read_run(os.fspath(folder))
+    return _engine.run_of(_known(run.model), run)
 
 
 @dataclass
@@ -180,14 +159,18 @@ class Workspace:
 def map_workspace(
     scene: SceneLike, samples: int = 300, *, changes: Changes = (), progress: bool | None = None, threads: int = 1
 ) -> Workspace:
-    """Where the motors can bring what has a target, as `sinew workspace`.
+    """Where the motors can bring what has a target, as `sinew workspace`, which makes the scene quasi-static and has
+    its steps converge; here the scene says so itself: `analysis="quasi_static"`, or
+    `changes={"analysis": "quasi_static", "newton": "converged"}` for a file.
 
-    The scene must be quasi-static: `analysis="quasi_static"`. Throws InputError where a motor's limit is missing."""
+    Throws InputError where a motor's limit is missing."""
     model = build(scene, changes)
     with _bar("workspace", float(samples), progress) as tell:
         motors, columns, status, within, forces, positions, points, interrupted = _engine.workspace(
             model, samples, tell, threads
         )
+        if tell and not interrupted:
+            tell(float(samples), "done")
     found = Workspace(motors, columns, status, np.array(within, dtype=np.bool_), forces, positions, points)
     if interrupted:
         raise Interrupted("interrupted; what was found is in the exception's `run`", found)
@@ -210,4 +193,3 @@ def _bar(name: str, total: float, wanted: bool | None) -> Iterator[Callable[[flo
             bar.update(done - bar.n)
 
         yield tell
-        bar.update(total - bar.n)

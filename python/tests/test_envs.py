@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import warnings
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 
 import gymnasium
 import numpy as np
 import pytest
+from conftest import EXAMPLES
 from gymnasium.utils.env_checker import check_env
 
+import sinew
 from sinew import envs
 
 TASKS = [envs.ReachEnv, envs.GraspEnv]
@@ -50,6 +54,58 @@ def test_random_actions_never_crash(make: Callable[..., envs.SinewEnv]) -> None:
             assert np.isfinite(seen).all() and np.isfinite(value) and info["status"]
             if truncated:
                 break
+
+
+def wander(task: str, first: int, count: int) -> dict[str, int]:
+    """Random episodes of a task on a small mesh: how they ended."""
+    env: envs.SinewEnv = (
+        envs.ReachEnv(scene=envs.trunk_scene((4, 1, 1), 4)) if task == "reach" else envs.GraspEnv(scene=envs.gripper_scene((4, 1, 1), 4))
+    )
+    ends: dict[str, int] = {}
+    for seed in range(first, first + count):
+        random = np.random.default_rng(seed)
+        env.reset(seed=seed)
+        info: dict[str, object] = {}
+        for _ in range(env.horizon):
+            seen, value, terminated, _, info = env.step(random.uniform(-1, 1, env.action_space.shape).astype(np.float32))
+            assert np.isfinite(seen).all() and np.isfinite(value)
+            if terminated:
+                break
+        ends[str(info["status"])] = ends.get(str(info["status"]), 0) + 1
+    return ends
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", ["reach", "grasp"])
+def test_thousands_of_random_episodes_never_crash(task: str) -> None:
+    """5000 episodes of 50 actions each; those that end early say why."""
+    with ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")) as pool:
+        jobs = [pool.submit(wander, task, first, 100) for first in range(0, 5000, 100)]
+        ends: dict[str, int] = {}
+        for job in jobs:
+            for status, count in job.result().items():
+                ends[status] = ends.get(status, 0) + count
+    print(task, ends)
+    assert sum(ends.values()) == 5000 and ends["linearized"] > 4500
+
+
+def test_episodes_that_break_the_robot_are_worth_the_least() -> None:
+    env = envs.SinewEnv(
+        sinew.Scene.from_file(EXAMPLES / "finger.yaml", {"actuators.pull.displacement": "external", "newton": {"limit": 2}}),
+        actions={"pull": (0.0, 5.0)},
+        observed=["tip"],
+        rate=1.0,
+    )
+    env.reset(seed=0)
+    seen, value, terminated, truncated, info = env.step(np.ones(1, dtype=np.float32))
+    assert terminated and not truncated and value == env.worst * env.horizon and info["status"] != "converged"
+    assert np.isfinite(seen).all()
+
+
+def test_goals_are_set_from_outside() -> None:
+    env = envs.ReachEnv()
+    seen, _ = env.reset(options={"goal": [0.19, 0.01, 0.02]})
+    assert seen[-3:].tolist() == [0.19, 0.01, 0.02]
 
 
 def test_grasping_works_and_letting_go_does_not() -> None:
@@ -103,5 +159,9 @@ def test_bad_actions_and_scenes_are_refused() -> None:
         env.step(np.full(4, np.nan, dtype=np.float32))
     with pytest.raises(ValueError, match="known"):
         envs.SinewEnv(envs.trunk_scene(), actions={"pull_up": (0, 1)}, observed=["tip"])
+    for wrong in ({"rate": -1}, {"steps": 0}, {"horizon": 0}, {"observed": "tip"}, {"actions": {"pull_left": (1, 0)}}):
+        keywords = {"actions": {"pull_left": (0, 1)}, "observed": ["tip"], **wrong}
+        with pytest.raises(ValueError):
+            envs.SinewEnv(envs.trunk_scene(), **keywords)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="render_mode"):
         envs.ReachEnv(render_mode="ansi")

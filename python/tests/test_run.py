@@ -172,3 +172,73 @@ def test_targets_are_told_at_every_step() -> None:
         assert report.accepted
     assert report.reached and state.output("tip")[0] == pytest.approx(0.01, abs=1e-4)
     assert (state.forces >= 0).all()
+
+
+def test_failures_and_interruptions_are_pickled(finger: Path, tmp_path: Path) -> None:
+    changes = {"actuators.pull.displacement": {"times": [0, 0.05, 0.1], "values": [0, 0.001, 5]}, "newton": {"limit": 4}}
+    with pytest.raises(sinew.StepFailed) as caught:
+        sinew.simulate(finger, changes=changes, progress=False)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert str(again) == str(caught.value)
+    assert again.run.failure == caught.value.run.failure != "rest"
+    assert again.run.failure_detail == caught.value.run.failure_detail
+    stop = pickle.loads(pickle.dumps(sinew.Interrupted("stopped", again.run)))
+    assert isinstance(stop, sinew.Interrupted) and stop.run.end == "numerical_stop"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_what_a_signal_throws_is_what_arrives(finger: Path) -> None:
+    def late(*_: object) -> None:
+        raise TimeoutError("late")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    try:
+        with pytest.raises(TimeoutError, match="late"):
+            sinew.simulate(finger, changes={"time.duration": "500 s"}, progress=False)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_a_loop_of_ones_own_is_recorded(small: Path, tmp_path: Path) -> None:
+    model = sinew.build(small)
+    state = model.initial_state()
+    recorder = sinew.Recorder(state, tmp_path / "out")
+    for k in range(5):
+        recorder.add(state, sinew.step(model, [0.02 * k], state))
+    run = recorder.run()
+    assert len(run) == 6 and run.end == "done" and run.status[1:] == ["converged"] * 5
+    assert run.signals["draw.force"].tolist() == pytest.approx([0, 0, 0.02, 0.04, 0.06, 0.08])
+    assert (run.output("tip")[-1] == state.output("tip")).all() and run.output("tip").shape == (6, 3)
+    assert (sinew.read_run(tmp_path / "out").state().numbers() == state.numbers()).all()
+    assert (tmp_path / "out" / "signals.csv").exists()
+    with pytest.raises(ValueError, match="another model"):
+        recorder.add(sinew.build(small, {"gravity": [0, 0, 0]}).initial_state(), sinew.step(model, None, state))
+
+
+def test_a_state_goes_on_in_a_run_of_the_same_file(small: Path) -> None:
+    state = sinew.simulate(small, progress=False).state(5)
+    assert len(sinew.simulate(small, state=state, progress=False)) == 6
+    assert sinew.build(small) is state.model
+
+
+def test_commands_are_replayed(tmp_path: Path) -> None:
+    file = EXAMPLES / "reach.yaml"
+    changes = {"time.duration": "0.2 s"}
+    found = sinew.simulate(file, tmp_path / "out", changes=changes, progress=False)
+    again = sinew.simulate(file, changes=changes, commands=tmp_path / "out" / "commands.csv", progress=False)
+    assert np.abs(again.output("tip") - found.output("tip")).max() < 1e-6
+    assert len(again.model.targets) == 0
+
+
+def test_numbers_of_threads_and_samples_are_judged(small: Path) -> None:
+    model = sinew.build(small)
+    for call in (
+        lambda: sinew.step(model, None, model.initial_state(), threads=0),
+        lambda: sinew.simulate(model, threads=-3, progress=False),
+        lambda: sinew.map_workspace(model, -3, progress=False),
+        lambda: sinew.map_workspace(model, threads=-5, progress=False),
+    ):
+        with pytest.raises(sinew.InputError, match="must be"):
+            call()

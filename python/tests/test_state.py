@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import gc
+import itertools
 import pickle
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -71,8 +72,21 @@ def test_numbers_make_a_state_again(small: Path) -> None:
     sinew.step(model, [0.1], state)
     again = sinew.State.from_numbers(model, state.numbers().tolist())
     assert again.time == state.time and (again.rods["arm"].q == state.rods["arm"].q).all()
+    assert (again.forces == state.forces).all()
+    ends = []
+    for own in (state, again, pickle.loads(pickle.dumps(state))):
+        sinew.step(model, None, own)  # all go on with what was told
+        ends.append(own.numbers())
+    assert (ends[0] == ends[1]).all() and (ends[0] == ends[2]).all()
+    run = sinew.simulate(model, state=state, progress=False)
+    assert run.signals["draw.force"].min() == 0.1
     with pytest.raises(ValueError):
         sinew.State.from_numbers(model, [1.0])
+    for place, value in ((0, np.nan), (0, 1e300), (-1, np.inf)):
+        numbers = state.numbers().copy()
+        numbers[place] = value
+        with pytest.raises(ValueError, match="finite|time"):
+            sinew.State.from_numbers(model, numbers.tolist())
 
 
 def test_commands_by_name_by_order_and_as_text(small: Path) -> None:
@@ -102,7 +116,11 @@ def test_commands_by_name_by_order_and_as_text(small: Path) -> None:
         ([1.0, 2.0], "there are 1, not 2"),
         ([], "there are 1, not 0"),
         ({"draw": None}, "float|real|number"),
-        (3, "iterable"),
+        (3, "must be a dict by names, or a list"),
+        ({0.1}, "must be a dict by names, or a list"),
+        ("0.1", "must be a dict by names, or a list"),
+        (1j * np.ones(1), "real"),
+        (itertools.repeat(0.1), "there are 1, not more"),
     ],
 )
 def test_bad_commands_are_refused_and_nothing_happens(small: Path, command: object, message: str) -> None:
@@ -127,7 +145,12 @@ def test_a_step_that_fails_tells_and_keeps_the_state(finger: Path) -> None:
     report = sinew.step(model, {"pull": 10.0}, state)
     assert not report.accepted and report.status in {"max_iterations", "singular", "diverged", "inverted"}
     assert report.meaning
-    assert np.isfinite(state.numbers()).all() and len(before) == len(state.numbers())
+    # It was halved first; what stays is the last that was accepted, which goes on.
+    assert state.time < model.time_step and np.isfinite(state.numbers()).all()
+    if state.time == 0.0:
+        assert (state.numbers() == before).all()
+    model = sinew.build(finger)
+    assert sinew.step(model, {"pull": 1e-4}, sinew.State.from_numbers(model, state.numbers().tolist())).accepted
 
 
 def test_threads_give_what_one_after_the_other_gives(finger: Path) -> None:
@@ -197,3 +220,106 @@ def test_everything_a_state_shows(finger: Path) -> None:
     assert set(seen.outputs) == {"tip"} and len(seen.sliding_points) == 7
     with pytest.raises(sinew.InputError, match="did you mean `tip`"):
         state.output("tipp")
+
+
+def test_what_is_told_is_taken_before_the_state_is_touched(small: Path) -> None:
+    """Values may come from code that looks at the state, copies it or steps it."""
+    model = sinew.build(small)
+    state = model.initial_state()
+    kept = []
+
+    class Value:
+        def __float__(self) -> float:
+            kept.append((state.copy(), state.rods["arm"].q, state.rods["arm"].q.copy()))
+            sinew.step(model, [0.3], state)
+            return 0.1
+
+    assert sinew.step(model, {"draw": Value()}, state).accepted  # type: ignore[dict-item]
+    copy_, view, numbers = kept[0]
+    assert state.grid == 2 and copy_.time == 0.0 and (view == numbers).all()
+
+
+def test_motors_that_are_looked_for_can_be_told() -> None:
+    from conftest import EXAMPLES
+
+    changes = {"analysis": "quasi_static", "newton": "converged"}
+    model = sinew.build(EXAMPLES / "reach.yaml", changes)
+    state = model.initial_state()
+    told = [0.5, 0.4, 0.3, 0.2]
+    report = sinew.step(model, told, state)
+    assert report.accepted and report.targets == "" and state.forces.tolist() == pytest.approx(told, abs=1e-12)
+    jacobian = sinew.jacobian(model, state, "equilibrium")
+    ends = []
+    for sign in (1, -1):
+        own = state.copy()
+        sinew.step(model, [told[0] + sign * 1e-3, *told[1:]], own)
+        ends.append(own.output("tip"))
+    assert jacobian.effectors[:, 0] == pytest.approx((ends[0] - ends[1]) / 2e-3, rel=1e-4, abs=1e-7)
+    with pytest.raises(sinew.InputError, match="is looked for"):
+        sinew.step(model, {"pull_right": 1.0}, state)
+    with pytest.raises(sinew.InputError, match="together"):
+        sinew.step(model, told, state, targets={"tip": [0, 0, 0]})
+
+
+def test_part_of_a_target_leaves_the_rest() -> None:
+    from conftest import EXAMPLES
+
+    model = sinew.build(EXAMPLES / "reach.yaml", {"targets.tip.at": "external"})
+    state = model.initial_state()
+    start = state.output("tip")
+    report = sinew.step(model, None, state, targets={"tip": {"y": start[1] + 1e-4}})
+    assert report.reached, report.targets
+    assert state.output("tip") == pytest.approx(start + [0, 1e-4, 0], abs=1e-3)
+
+
+def test_bits_do_not_depend_on_who_else_builds(tmp_path: Path) -> None:
+    tree = {
+        "time": {"step": "10 ms", "duration": "20 ms"},
+        "solids": {
+            "bar": {
+                "mesh": sinew.Mesh.bar((0.2, 0.08, 0.08), (20, 8, 8)),
+                "material": {"young": "1 MPa", "poisson": 0.3},
+                "density": 1000,
+                "fixed": {"group": "start"},
+            }
+        },
+        "gravity": [0, 0, -9.81],
+    }
+
+    def work(number: int) -> np.ndarray:
+        model = sinew.build({**tree, "title": str(number)})  # each its own
+        state = model.initial_state()
+        sinew.step(model, None, state)
+        return state.numbers()
+
+    alone = work(0)
+    with ThreadPoolExecutor(4) as pool:
+        assert all((own == alone).all() for own in pool.map(work, range(1, 5)))
+
+
+def test_forked_processes_step_and_end(small: Path) -> None:
+    code = f"""
+import os, sys, sinew
+model = sinew.build({str(small)!r})
+state = model.initial_state()
+mesh = sinew.Mesh.bar((0.1, 0.02, 0.02), (2, 1, 1))
+sinew.step(model, [0.1], state, threads=2)
+child = os.fork()
+sinew.step(model, [0.1], state, threads=2)
+numbers = state.numbers().sum()
+del model, state, mesh
+if child == 0:
+    os._exit(0 if numbers == numbers else 1)
+_, status = os.waitpid(child, 0)
+sys.exit(status)
+"""
+    import subprocess
+    import sys
+
+    assert subprocess.run([sys.executable, "-W", "ignore", "-c", code], timeout=60).returncode == 0
+
+
+@pytest.mark.parametrize("bad", [np.zeros((0, 2)), np.zeros((2, 0)), np.full((2, 2), np.nan)])
+def test_manipulability_of_nothing_is_refused(bad: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="finite"):
+        sinew.manipulability(bad)

@@ -59,10 +59,15 @@ def test_groups_of_meshio_are_groups(kind: str) -> None:
 
 
 def test_pictures(run: sinew.Run, tmp_path: Path) -> None:
-    axes = plot.signals(run)
-    assert len(axes.lines) == 3 and "mm" in axes.get_ylabel()
-    assert len(plot.signals(run, ["pull"]).lines) == 2
-    assert len(plot.rod(run.state(), "cable").lines) == 3
+    lengths, forces = plot.signals(run)
+    assert len(lengths.lines) == 4 and "mm" in lengths.get_ylabel() and "N" in forces.get_ylabel()
+    assert [len(own.lines) for own in plot.signals(run, ["pull"])] == [1, 1]
+    assert len(plot.signals(run, "tip.z")[0].lines) == 1
+    assert [len(own.lines) for own in plot.rod(run.state(), "cable")] == [3]
+    bending, stress = plot.rod(run.state(), "cable", ["bending_y", "von_mises"])
+    assert "1/m" in bending.get_ylabel() and "Pa" in stress.get_ylabel()
+    with pytest.raises(ValueError, match="cannot share"):
+        plot.signals(run, ["pull"], lengths)
     shape = plot.shape(run.state())
     shape.figure.savefig(tmp_path / "shape.png")
     assert (tmp_path / "shape.png").stat().st_size > 10_000

@@ -39,9 +39,10 @@ Json to_json(const Node& node) {
   if (node.text == "true" || node.text == "false") return node.text == "true";
   long whole = 0;
   const char* end = node.text.data() + node.text.size();
-  if (std::from_chars(node.text.data(), end, whole).ptr == end) return whole;
+  const auto all_of = [end](const std::from_chars_result& read) { return read.ec == std::errc() && read.ptr == end; };
+  if (all_of(std::from_chars(node.text.data(), end, whole))) return whole;
   double real = 0.0;
-  if (std::from_chars(node.text.data(), end, real).ptr == end) return real;
+  if (all_of(std::from_chars(node.text.data(), end, real))) return real;
   return node.text;
 }
 

@@ -50,7 +50,11 @@ SceneFile parse_scene(const std::string& text, const std::filesystem::path& name
   return scene_file(root, overrides.empty() ? text : write_document(root), name, folder);
 }
 
-SceneFile scene_of(const Node& root, const std::filesystem::path& folder) {
+SceneFile scene_of(const Node& tree, const std::filesystem::path& folder, const std::vector<std::string>& overrides) {
+  Node root = tree;
+  if (root.kind == Node::Kind::map) {
+    for (const std::string& assignment : overrides) set_value(root, assignment);
+  }
   const std::string text = write_document(root);
   if (text.size() > largest_document)
     throw InputError({.rule = fmt::format("the scene is longer than {} KiB when written down", largest_document / 1024),

@@ -28,7 +28,8 @@ SceneFile parse_scene(const std::string& text, const std::filesystem::path& name
                       const std::vector<std::string>& overrides = {});
 
 /// The same for a tree without lines, put together by a program: messages name the field alone.
-SceneFile scene_of(const Node& root, const std::filesystem::path& folder);
+SceneFile scene_of(const Node& tree, const std::filesystem::path& folder,
+                   const std::vector<std::string>& overrides = {});
 
 /// Line of the field, or of the nearest object around it that the file has; 0 if there is none or it was overridden.
 int line_of(const SceneFile& file, const std::string& field_path);

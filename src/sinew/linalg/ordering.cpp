@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <numeric>
 #include <unordered_map>
 
@@ -133,6 +134,10 @@ std::vector<int> nested_dissection(const Graph& graph) {
   std::vector<idx_t> weights(graph.weight.begin(), graph.weight.end());
   std::vector<idx_t> order(graph.weight.size()), place(graph.weight.size());
   if (n == 0 || neighbours.empty()) return {};
+  // METIS draws from the C library's random numbers, which all threads share: one at a time, or the order, and with it
+  // the last bits of every result, would depend on who else builds a model.
+  static std::mutex drawing;
+  const std::lock_guard lock(drawing);
   const int status =
       METIS_NodeND(&n, first.data(), neighbours.data(), weights.data(), nullptr, order.data(), place.data());
   if (status != METIS_OK) return {};

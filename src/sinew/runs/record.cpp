@@ -63,14 +63,16 @@ std::vector<std::string> warnings_before(const Model& model) {
     if (std::holds_alternative<External>(drive)) warnings.push_back(what);
   };
   for (const ActuatorModel& own : model.actuators)
-    add(own.drive, "actuators." + own.name + ": driven from outside, which a run by itself does not; it stays at 0");
+    add(own.drive, "actuators." + own.name +
+                       ": driven from outside, which a run by itself does not; it stays where it is at the start");
   for (const Target& own : model.scene.targets) {
     if (std::holds_alternative<External>(own.at))
       warnings.push_back("targets." + own.output +
                          ": set from outside, which a run by itself does not; it stays where it is at the start");
   }
   for (const LoadModel& own : model.loads)
-    add(own.factor, "loads." + own.name + ": set from outside, which a run by itself does not; it stays at 0");
+    add(own.factor,
+        "loads." + own.name + ": set from outside, which a run by itself does not; it stays where it is at the start");
   return warnings;
 }
 
@@ -99,38 +101,38 @@ io::RecordingWriter begin_recording(const LoadedScene& loaded, const State& star
   if (failed)
     throw InputError(
         {folder.string(), 0, "", "", "the folder cannot be made: " + failed.message(), "give another one with -o"});
+  if (!loaded.held.empty()) std::filesystem::create_directories(held_folder(folder), failed);
+  for (const auto& [name, bytes] : loaded.held) {
+    io::AppendFile file(held_folder(folder) / name, io::AppendFile::Start::empty);
+    file.append(bytes);
+  }
   io::RecordingWriter writer = io::RecordingWriter::create(path, header_of(loaded));
   writer.append(recorded(loaded.model, start, StepReport{}));
   return writer;
 }
 
-Recorded record(const Model& model, const State& start, const std::function<void(io::RecordedStep)>& keep,
-                const OnStep& on_step, int threads) {
-  Recorded all;
-  all.last = start;
-  RunSummary& summary = all.summary;
+RunSummary begin_summary(const Model& model, int threads) {
+  RunSummary summary;
   summary.warnings = warnings_before(model);
   summary.threads = threads;
-  bool unstable = false;
-  all.end = run(
-      model, start,
-      [&](const State& state, const StepReport& report) {
-        keep(recorded(model, state, report));
-        summary.times.push_back(report.times);
-        summary.rotated += report.rotated ? 1 : 0;
-        summary.redundant += report.redundant ? 1 : 0;
-        summary.halved += report.halvings > 0 ? 1 : 0;
-        unstable = report.unstable;
-        add(report.contact, summary.contact);
-        if (model.scene.analysis != Analysis::modal)  // (what a mode's picture does is no state)
-          summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
-        all.last = state;
-        return on_step(state, report);
-      },
-      &summary.failure, threads);
-  summary.end = end_word(all.end);
-  add_warnings(model, all.last, summary.warnings);
-  if (unstable) {
+  return summary;
+}
+
+void add(const Model& model, const State& state, const StepReport& report, RunSummary& summary) {
+  summary.times.push_back(report.times);
+  summary.rotated += report.rotated ? 1 : 0;
+  summary.redundant += report.redundant ? 1 : 0;
+  summary.halved += report.halvings > 0 ? 1 : 0;
+  summary.unstable = report.unstable;
+  add(report.contact, summary.contact);
+  if (model.scene.analysis != Analysis::modal)  // (what a mode's picture does is no state)
+    summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
+}
+
+void conclude(const Model& model, const State& last, RunEnd end, RunSummary& summary) {
+  summary.end = end_word(end);
+  add_warnings(model, last, summary.warnings);
+  if (summary.unstable) {
     summary.warnings.push_back(
         "the last equilibrium is unstable, a real body would have buckled; a small side load or shorter steps show "
         "where it goes");
@@ -139,8 +141,26 @@ Recorded record(const Model& model, const State& start, const std::function<void
     summary.warnings.push_back(fmt::format(
         "up to {} elements were flat or inside out ({} at the end): this is no state of a real body. Look at "
         "volume_ratio in ParaView; load it less or slower, or give a finer mesh or another law",
-        summary.most_inverted, count_folded(model, all.last)));
+        summary.most_inverted, count_folded(model, last)));
   }
+}
+
+Recorded record(const Model& model, const State& start, const std::function<void(io::RecordedStep)>& keep,
+                const OnStep& on_step, int threads) {
+  Recorded all;
+  all.last = start;
+  RunSummary& summary = all.summary;
+  summary = begin_summary(model, threads);
+  all.end = run(
+      model, start,
+      [&](const State& state, const StepReport& report) {
+        keep(recorded(model, state, report));
+        add(model, state, report, summary);
+        all.last = state;
+        return on_step(state, report);
+      },
+      &summary.failure, threads);
+  conclude(model, all.last, all.end, summary);
   return all;
 }
 

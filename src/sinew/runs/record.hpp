@@ -22,10 +22,15 @@ std::vector<std::string> warnings_before(const Model& model);
 /// What a recording begins with.
 io::RecordingHeader header_of(const LoadedScene& loaded);
 
-/// A new recording in a folder, with the state at t = 0; the folder is made. Throws InputError if it cannot be, or if
-/// it holds a recording that is not to be replaced.
+/// A new recording in a folder, with the state at t = 0 and the meshes that were handed over; the folder is made.
+/// Throws InputError if it cannot be, or if it holds a recording that is not to be replaced.
 io::RecordingWriter begin_recording(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
                                     bool replace);
+
+/// What is known of a run before, in each step that was accepted, and at its end.
+RunSummary begin_summary(const Model& model, int threads);
+void add(const Model& model, const State& state, const StepReport& report, RunSummary& summary);
+void conclude(const Model& model, const State& last, RunEnd end, RunSummary& summary);
 
 /// How a run ended.
 struct Recorded {

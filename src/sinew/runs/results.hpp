@@ -22,6 +22,7 @@ struct RunSummary {
   int threads = 1;
   int halved = 0;         ///< of those, parts of steps that were too long
   int redundant = 0;      ///< of those, steps whose rows repeated each other
+  bool unstable = false;  ///< the last of those
   ContactReport contact;  ///< of those, as `add` puts them together
 };
 

@@ -5,12 +5,25 @@
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/inverse.hpp"
 #include "sinew/sim/modal.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/statics.hpp"
 
 namespace sinew {
 
 namespace {
+
+/// What the scene says; what it leaves to others goes on as it is.
+void scene_command(const Model& model, const State& state, double time, Command& command) {
+  command_at(model, time, command);
+  const auto left_open = [](const Drive& drive) { return std::holds_alternative<External>(drive); };
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    if (left_open(model.actuators[i].drive)) command.actuators[i] = told_to(model, state, static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    if (left_open(model.loads[i].factor)) command.loads[i] = state.loads[i];
+  }
+}
 
 /// Takes what a step by value gives.
 StepReport taken(StepResult result, State& state) {
@@ -40,9 +53,9 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     if (told.command)
       command = *told.command;
     else
-      command_at(model, to, command);
+      scene_command(model, state, to, command);
     if (!lands) command = between(command_of(model, state), command, part / whole);
-    if (!model.effectors.empty()) {
+    if (!model.effectors.empty() && !told.forward) {
       if (told.goal)
         goal = *told.goal;
       else

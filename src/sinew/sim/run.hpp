@@ -11,10 +11,12 @@ namespace sinew {
 /// A step that does not converge is tried again with half the time, this many times at most.
 constexpr int kHalvings = 5;
 
-/// What a controller says instead of the scene, for the next point of the time grid; null: the scene's own.
+/// What a controller says instead of the scene, for the next point of the time grid; null: the scene's own, and what
+/// is driven from outside stays as it is.
 struct Told {
   const Command* command = nullptr;
   const Goal* goal = nullptr;
+  bool forward = false;  ///< sought motors obey the command like all others; targets are not looked at
 };
 
 /// One accepted step towards the next point of the time grid, halved as often as needed: the only thing that decides

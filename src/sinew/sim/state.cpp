@@ -1,5 +1,6 @@
 #include "sinew/sim/state.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -155,6 +156,9 @@ State unpack(const Model& model, const std::vector<double>& numbers) {
   const std::size_t contacts = more / kContactNumbers;
   if (numbers.size() < plain || more % kContactNumbers != 0 || numbers[1] != static_cast<double>(contacts))
     throw std::invalid_argument("the recorded state does not belong to this model");
+  if (!std::all_of(numbers.begin(), numbers.end(), [](double value) { return std::isfinite(value); }) ||
+      !(numbers[0] >= 0.0 && numbers[0] < 0x1p53))
+    throw std::invalid_argument("the recorded state is none: its numbers are not finite, or it has no place in time");
   std::size_t at = 0;
   state.grid = static_cast<long>(numbers[at++]);
   state.contacts.resize(static_cast<std::size_t>(numbers[at++]));

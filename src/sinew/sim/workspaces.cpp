@@ -1,12 +1,25 @@
 #include "sinew/sim/workspaces.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 
 namespace sinew {
 
+Workspaces::~Workspaces() { forget_forked(); }
+
+void Workspaces::forget_forked() {
+  const long process = getpid();
+  if (process == process_) return;
+  for (auto& own : idle_) own.second.release();
+  idle_.clear();
+  process_ = process;
+}
+
 std::unique_ptr<Workspace> Workspaces::take(int threads) {
   {
     const std::lock_guard lock(mutex_);
+    forget_forked();
     const auto found =
         std::find_if(idle_.rbegin(), idle_.rend(), [threads](const auto& one) { return one.first == threads; });
     if (found != idle_.rend()) {

@@ -15,6 +15,9 @@ namespace sinew {
 class Workspaces {
  public:
   explicit Workspaces(const Model& model) : model_(model) {}
+  ~Workspaces();
+  Workspaces(const Workspaces&) = delete;
+  Workspaces& operator=(const Workspaces&) = delete;
 
   class Loan {
    public:
@@ -34,9 +37,12 @@ class Workspaces {
 
  private:
   std::unique_ptr<Workspace> take(int threads);
+  /// Leaves alone what a process made that this one was forked from: its threads are not here to be joined.
+  void forget_forked();
   void give_back(int threads, std::unique_ptr<Workspace> own);
 
   const Model& model_;
+  long process_ = 0;  ///< that made what is idle
   std::mutex mutex_;
   std::vector<std::pair<int, std::unique_ptr<Workspace>>> idle_;
 };
