@@ -31,7 +31,20 @@ struct WorkspaceOptions {
   int threads = 1;
 };
 
+struct ViewOptions {
+  std::filesystem::path what;    ///< a scene file, or a run's folder or recording
+  std::filesystem::path folder;  ///< where files that the scene names are looked for; empty: beside it
+  std::vector<std::string> overrides;
+  std::string address = "127.0.0.1";
+  int port = 0;       ///< 0: any that is free
+  std::string token;  ///< empty: a random one
+  bool open = false;  ///< a browser
+  int threads = 0;    ///< 0: two, if the machine has them
+};
+
 int run_scene(const RunOptions& options);
+int view(const ViewOptions& options);
+int export_page(const std::filesystem::path& folder, const std::filesystem::path& file, int frames);
 int map_workspace(const WorkspaceOptions& options);
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
 int describe_mesh(const std::filesystem::path& path);

@@ -19,6 +19,9 @@ Examples:
   sinew run finger.yaml --profile --threads 1         where the time of a step goes
   sinew run reach.yaml --commands out/commands.csv    the commands that were found, without looking for them again
   sinew run --resume out/finger                       go on with a run that was stopped
+  sinew view examples/reach.yaml                      a page in the browser: drag the tip, push the body
+  sinew view out/finger                               the same of a run that was recorded
+  sinew export out/finger -o finger.html              one file that plays by itself
   sinew workspace reach.yaml -o out --samples 500     where the motors can bring the tip
   sinew check finger.yaml                             what the engine makes of a scene; does not run it
   sinew info finger.vtk                               sizes and quality of a mesh
@@ -85,6 +88,31 @@ int main(int argc, char** argv) {
   CLI::App* views =
       program.add_subcommand("export", "Write tables, ParaView files and the picture again from a run's recording");
   views->add_option("folder", recorded, "Folder of the run")->required();
+  std::filesystem::path standalone;
+  int frames = 600;
+  views->add_option("-o,--output", standalone,
+                    "Instead of these one HTML file that plays the run in any browser, without a network");
+  views->add_option("--frames", frames, "Frames of it, at most")->check(CLI::Range(1, 100000))->capture_default_str();
+
+  sinew::app::ViewOptions viewed;
+  CLI::App* view = program.add_subcommand("view", "Show a scene live, or a recorded run, in a page of the browser");
+  view->add_option("what", viewed.what, "Scene file (YAML), or the folder of a run")->required();
+  view->add_option("--set", viewed.overrides, "Change the scene: path=value")->type_name("PATH=VALUE");
+  view->add_option("--folder", viewed.folder, "Where files that the scene names are looked for, if not beside it");
+  view->add_option("--port", viewed.port, "Port to serve on; any that is free if left out")
+      ->check(CLI::Range(0, 65535));
+  view->add_option("--bind", viewed.address,
+                   "Address to serve on; others than this machine can reach it then, if they know the token")
+      ->capture_default_str();
+  view->add_option("--token", viewed.token, "What the address ends with; random if left out")
+      ->envname("SINEW_TOKEN")
+      ->check([](const std::string& token) {
+        const bool plain =
+            token.size() >= 16 && token.find_first_not_of("0123456789abcdefghijklmnopqrstuvwxyz") == std::string::npos;
+        return plain ? std::string() : std::string("must be 16 or more small letters and digits");
+      });
+  view->add_flag("--open", viewed.open, "Open a browser");
+  view->add_option("--threads", viewed.threads, "Threads that share a step")->check(CLI::Range(1, 64));
 
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of scene files");
 
@@ -94,10 +122,11 @@ int main(int argc, char** argv) {
                        [word](const CLI::App* command) { return command->get_name() == word; });
   };
   if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
-    fmt::print(stderr,
-               "{}: is not a command of sinew\n    the commands are run, workspace, check, info, export, schema; see "
-               "sinew --help\n",
-               argv[1]);
+    fmt::print(
+        stderr,
+        "{}: is not a command of sinew\n    the commands are run, view, workspace, check, info, export, schema; see "
+        "sinew --help\n",
+        argv[1]);
     return sinew::app::kBadInput;
   }
   try {
@@ -110,7 +139,10 @@ int main(int argc, char** argv) {
     if (*workspace) return sinew::app::map_workspace(reach);
     if (*check) return sinew::app::check_scene(checked, check_overrides);
     if (*info) return sinew::app::describe_mesh(mesh);
-    if (*views) return sinew::app::export_run(recorded);
+    if (*view) return sinew::app::view(viewed);
+    if (*views)
+      return standalone.empty() ? sinew::app::export_run(recorded)
+                                : sinew::app::export_page(recorded, standalone, frames);
     if (*schema) return sinew::app::print_schema();
   } catch (const sinew::InputError& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -34,6 +34,7 @@ from sinew._engine import (
 from sinew.errors import InputError, Interrupted, StepFailed
 from sinew.mesh import Mesh
 from sinew.running import Workspace, build, map_workspace, read_run, simulate
+from sinew.showing import Shown, show
 from sinew.scene import *  # noqa: F403
 from sinew.scene import __all__ as _scene_names
 
@@ -54,6 +55,7 @@ __all__ = [
     "Run",
     "Snapshot",
     "SolidSnapshot",
+    "Shown",
     "SolidState",
     "State",
     "StepFailed",
@@ -66,6 +68,7 @@ __all__ = [
     "manipulability",
     "map_workspace",
     "read_run",
+    "show",
     "simulate",
     "step",
     *_scene_names,

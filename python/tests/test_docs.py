@@ -89,7 +89,7 @@ def test_types_are_strictly_right() -> None:
     assert told.returncode == 0, told.stdout
 
 
-@pytest.mark.parametrize("file", ["docs/python.md", "python/README.md"])
+@pytest.mark.parametrize("file", ["docs/python.md", "docs/page.md", "python/README.md"])
 def test_blocks_of_python_run(file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mpl = pytest.importorskip("matplotlib")
     mpl.use("Agg")

@@ -242,3 +242,30 @@ def test_numbers_of_threads_and_samples_are_judged(small: Path) -> None:
     ):
         with pytest.raises(sinew.InputError, match="must be"):
             call()
+
+
+@pytest.mark.parametrize("kind", ["file", "scene", "run", "folder"])
+def test_what_is_shown_is_served(kind: str, finger: Path, tmp_path: Path, program: str) -> None:
+    from urllib.error import HTTPError
+    from urllib.request import urlopen
+
+    scene = sinew.Scene.from_file(finger)
+    scene.solids["finger"].mesh = sinew.Mesh.bar((0.1, 0.014, 0.014), (10, 2, 2))
+    scene.solids["finger"].scale = 1.0
+    scene.time = sinew.Time(duration="50 ms")
+    if kind in ("run", "folder"):
+        run = sinew.simulate(scene, tmp_path / "out", progress=False)
+    what = {"file": lambda: finger, "scene": lambda: scene, "run": lambda: run, "folder": lambda: tmp_path / "out"}[kind]()
+    with sinew.show(what, browser=False) as page:
+        assert "iframe" in page._repr_html_() and page.address in repr(page)
+        with urlopen(page.address) as answer:
+            assert b"<title>Sinew</title>" in answer.read()
+        with pytest.raises(HTTPError, match="403"):
+            urlopen(page.address[:-1])
+    with pytest.raises(OSError):
+        urlopen(page.address)
+
+
+def test_what_cannot_be_shown_is_told(tmp_path: Path, program: str) -> None:
+    with pytest.raises(sinew.InputError, match="nowhere"):
+        sinew.show(tmp_path / "nowhere.yaml", browser=False)

@@ -40,6 +40,7 @@ const Layers kMayInclude = {
     {"sim", {"error", "lie", "linalg", "rod", "solid", "rigid", "contact", "constraint", "solve", "threads"}},
     {"io", {"error", "solid", "sim"}},
     {"runs", {"error", "solid", "sim", "io"}},
+    {"live", {"error", "solid", "sim", "io", "runs"}},
 };
 
 const std::set<std::string> kVagueNames = {"util",    "utils", "utilities", "common", "base",  "helper",

@@ -44,6 +44,12 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
     r += acting;
     count(acting);
   }
+  for (const Grip& grip : context.command.grips) {
+    if (grip.solid != number) continue;
+    const Vec3 acting = grip.stiffness * (x.col(grip.node) - grip.to);
+    r.col(grip.node) += acting;
+    forces.scale = std::max(forces.scale, acting.norm());
+  }
   each_load(context, number, [&](const SolidLoadModel& load, double factor) {
     const Eigen::Matrix3Xd acting = factor * load_forces(load, x);
     r -= acting;
@@ -90,6 +96,9 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
     for (int at = model.border.outerIndexPtr()[3 * model.rows.size()]; at < model.border.nonZeros(); ++at)
       factor_->border_values()[at] = model.border.valuePtr()[at];
     assemble(model, context.solids[number], iterate.solids[number].x, forces.deformation, kind, values);
+    for (const Grip& grip : context.command.grips) {
+      if (grip.solid == number) add_grip(model, grip, values);
+    }
     if (kind == solid::Tangent::exact) {
       each_load(context, number, [&](const SolidLoadModel& load, double factor) {
         add_pressure_tangent(load, factor, iterate.solids[number].x, values);

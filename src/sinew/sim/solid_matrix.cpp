@@ -277,4 +277,14 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
   });
 }
 
+void add_grip(const SolidModel& model, const Grip& grip, double* values) {
+  const BlockPlace* place = model.mass_places.data();
+  each_mass(model.body, [&](int row, int column, double) {
+    const BlockPlace& own = *place++;
+    if (row != grip.node || column != grip.node) return;
+    add_block(
+        own, [&](int i, int j) { return i == j ? grip.stiffness : 0.0; }, values);
+  });
+}
+
 }  // namespace sinew

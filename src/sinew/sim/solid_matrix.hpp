@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/step.hpp"
 
 namespace sinew {
 
@@ -14,6 +15,9 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
 /// The same where nothing else needs the deformation.
 void assemble(const SolidModel& model, const solid::StepStart& start, const Eigen::Matrix3Xd& x, solid::Tangent kind,
               double* values);
+
+/// Adds the stiffness of a grip.
+void add_grip(const SolidModel& model, const Grip& grip, double* values);
 
 /// Adds the symmetric part of the tangent of a pressure. The rest acts only along the open edge of the loaded surface.
 void add_pressure_tangent(const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x, double* values);

@@ -21,6 +21,7 @@ void command_at(const Model& model, double time, Command& command) {
   for (std::size_t i = 0; i < model.actuators.size(); ++i)
     command.actuators[i] = told_at(model.actuators[i].drive, time);
   for (std::size_t i = 0; i < model.loads.size(); ++i) command.loads[i] = told_at(model.loads[i].factor, time);
+  command.grips.clear();
 }
 
 Command command_at(const Model& model, double time) {
@@ -42,6 +43,7 @@ Command between(Command from, const Command& to, double part) {
   };
   mix(from.actuators, to.actuators);
   mix(from.loads, to.loads);
+  from.grips = to.grips;
   return from;
 }
 

@@ -11,10 +11,18 @@
 
 namespace sinew {
 
-/// What motors and loads are told for the end of a step.
+/// A spring that draws a node of a solid to a point of the world, as a hand does.
+struct Grip {
+  int solid = 0, node = 0;
+  double stiffness = 0.0;  ///< [N/m] >= 0
+  Vec3 to = Vec3::Zero();  ///< [m]
+};
+
+/// What motors and loads are told for the end of a step, and who else pulls.
 struct Command {
   std::vector<double> actuators;  ///< one each, in the unit of what drives it (N, m, N m, rad)
   std::vector<double> loads;      ///< factor of each [-]
+  std::vector<Grip> grips = {};   ///< of no scene: of whoever steps it by hand
 };
 
 /// The value of a table at a time; 0 where it is driven from outside.

@@ -117,7 +117,7 @@ double work_of_supports(const StepContext& context, const State& next, int numbe
   return sum - model.springs.cwiseProduct(drawn).cwiseProduct(carried).sum();
 }
 
-/// Work of motors, loads and supports over the step, by the mean of their forces at its ends.
+/// Work of motors, loads, supports and grips over the step, by the mean of their forces at its ends.
 double work(const StepContext& context, const State& next) {
   const Model& model = context.model;
   double sum = 0.0;
@@ -138,6 +138,10 @@ double work(const StepContext& context, const State& next) {
     sum += std::visit([&](const auto& load) { return work_of(load, context, next, before, after); }, model.loads[i].on);
   }
   for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
+  for (const Grip& grip : context.command.grips) {
+    const Vec3 from = context.start.solids[grip.solid].x.col(grip.node), to = next.solids[grip.solid].x.col(grip.node);
+    sum += grip.stiffness * (grip.to - 0.5 * (from + to)).dot(to - from);
+  }
   return sum;
 }
 

@@ -14,6 +14,8 @@ namespace {
 /// In the order of ParaView's symmetric tensors.
 Eigen::Matrix<double, 6, 1> six(const solid::Mat3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(0, 2)}; }
 
+}  // namespace
+
 RodSnapshot sample_cable(const Model& model, const State& state, int number) {
   const GeometricCableModel& cable = model.cables[number];
   const Eigen::VectorXd& z = state.cables[number].z;
@@ -35,6 +37,17 @@ RodSnapshot sample_cable(const Model& model, const State& state, int number) {
   sample.tangents.col(0) = m > 1 ? Vec3(sample.tangents.col(1)) : Vec3(base.R.col(0));
   return sample;
 }
+
+contact::Skin sample_shape(const Model& model, const contact::Shape& shape, const Placement& place) {
+  contact::Skin skin = contact::skin(shape, model.size);
+  if (std::holds_alternative<contact::HalfSpace>(shape)) {
+    const Vec3 middle = place.R.transpose() * (model.middle - place.p);
+    for (Vec3& point : skin.points) point += Vec3(middle.x(), middle.y(), 0.0);
+  }
+  return skin;
+}
+
+namespace {
 
 RodSnapshot sample_rod(const Model& model, const State& state, int number) {
   const rod::Rod& rod = model.rods[number].rod;
@@ -74,17 +87,15 @@ RodSnapshot sample_rod(const Model& model, const State& state, int number) {
   return sample;
 }
 
-/// Of a half-space a square as large as the scene, below its middle.
 BodySnapshot sample_body(const Model& model, const std::string& name, const contact::Shape& shape,
                          const Placement& place) {
   BodySnapshot sample;
   sample.name = name;
   sample.ground = std::holds_alternative<contact::HalfSpace>(shape);
-  contact::Skin skin = contact::skin(shape, model.size);
+  contact::Skin skin = sample_shape(model, shape, place);
   sample.points.resize(3, static_cast<Eigen::Index>(skin.points.size()));
-  const Vec3 middle = sample.ground ? Vec3(place.R.transpose() * (model.middle - place.p)) : Vec3(Vec3::Zero());
   for (std::size_t i = 0; i < skin.points.size(); ++i)
-    sample.points.col(static_cast<Eigen::Index>(i)) = apply(place, skin.points[i] + Vec3(middle.x(), middle.y(), 0.0));
+    sample.points.col(static_cast<Eigen::Index>(i)) = apply(place, skin.points[i]);
   sample.surface = std::move(skin.triangles);
   return sample;
 }

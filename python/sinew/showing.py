@@ -1,0 +1,126 @@
+"""The page in the browser, from Python."""
+
+from __future__ import annotations
+
+import atexit
+import html
+import os
+import re
+import shutil
+import subprocess
+import sysconfig
+import tempfile
+import webbrowser
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from sinew import _engine
+from sinew._engine import Run
+from sinew.errors import InputError
+from sinew.parts import assignments
+from sinew.running import Changes
+from sinew.scene import Scene
+
+
+def program() -> str:
+    """The program `sinew` that came with the package."""
+    found = shutil.which("sinew", path=sysconfig.get_path("scripts")) or shutil.which("sinew")
+    if found is None:
+        raise FileNotFoundError("the program `sinew` is neither beside this Python nor in PATH; install the package again")
+    return found
+
+
+class Shown:
+    """A page that is being served. In a notebook it shows itself; `close` ends it, as does the end of Python."""
+
+    def __init__(self, arguments: list[str], folder: tempfile.TemporaryDirectory[str], height: int) -> None:
+        self._folder = folder
+        self.height = height
+        self._process = subprocess.Popen(
+            [program(), "view", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
+        )
+        atexit.register(self.close)
+        assert self._process.stdout is not None and self._process.stderr is not None
+        told = self._process.stdout.readline()
+        match = re.match(r"Open (\S+)", told)
+        if match is None:
+            wrong = self._process.stderr.read()
+            self.close()
+            raise InputError(wrong.strip() or "the page could not be served")
+        self.address: str = match[1]
+        """Where a browser finds it."""
+
+    def close(self) -> None:
+        """Ends it."""
+        if self._process.poll() is None:
+            self._process.terminate()
+        self._process.communicate()
+        self._folder.cleanup()
+        atexit.unregister(self.close)
+
+    def __enter__(self) -> Shown:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _repr_html_(self) -> str:
+        return f'<iframe src="{html.escape(self.address)}" width="100%" height="{self.height}" style="border:0"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<sinew.Shown at {self.address}>"
+
+
+def show(
+    what: Scene | str | os.PathLike[str] | Mapping[str, Any] | Run,
+    *,
+    changes: Changes = (),
+    browser: bool | None = None,
+    port: int = 0,
+    height: int = 600,
+) -> Shown:
+    """Opens the page of a scene, live, or of a run, to be played: drag targets, pull at bodies, move motors.
+
+    what: a scene, its file, the folder of a run, or a run in memory.
+    browser: opens one; if left out, unless this is a notebook, where the value of a cell shows the page in it.
+    height: [px] in a notebook."""
+    folder: tempfile.TemporaryDirectory[str] = tempfile.TemporaryDirectory(prefix="sinew-show-")
+    arguments = [f"--port={port}", *(f"--set={own}" for own in assignments(changes))]
+    if isinstance(what, Run):
+        place = Path(folder.name) / "run"
+        what.save(place)
+        arguments.append(os.fspath(place))
+    elif isinstance(what, str | os.PathLike):
+        arguments.append(os.fspath(what))
+    else:
+        scene = what if isinstance(what, Scene) else Scene.from_tree(what)
+        meshes: dict[str, bytes] = {}
+        tree = scene._tree(meshes)
+        for name, content in meshes.items():
+            (Path(folder.name) / name).write_bytes(content)
+        names = {name: os.fspath(Path(folder.name) / name) for name in meshes}
+        file = Path(folder.name) / "scene.yaml"
+        file.write_text(_engine.write_tree(_renamed(tree, names)), encoding="utf-8")
+        arguments += [os.fspath(file), f"--folder={os.path.abspath(scene.folder)}"]
+    shown = Shown(arguments, folder, height)
+    if not _in_notebook() if browser is None else browser:
+        webbrowser.open(shown.address)
+    return shown
+
+
+def _renamed(value: Any, names: Mapping[str, str]) -> Any:
+    if isinstance(value, dict):
+        return {key: _renamed(own, names) for key, own in value.items()}
+    if isinstance(value, list):
+        return [_renamed(own, names) for own in value]
+    return names.get(value, value) if isinstance(value, str) else value
+
+
+def _in_notebook() -> bool:
+    try:
+        from IPython import get_ipython  # type: ignore[import-not-found, unused-ignore]
+    except ImportError:
+        return False
+    shell = get_ipython()  # type: ignore[no-untyped-call, unused-ignore]
+    return shell is not None and type(shell).__name__ == "ZMQInteractiveShell"

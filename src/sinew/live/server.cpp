@@ -1,0 +1,314 @@
+#include "sinew/live/server.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <deque>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "sinew/error/input_error.hpp"
+#include "sinew/io/document.hpp"
+
+namespace sinew::live {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using Error = beast::error_code;
+
+namespace {
+
+constexpr long kAhead = 2;                     ///< frames sent that have not been drawn yet
+constexpr std::chrono::seconds kPatience{10};  ///< for a request
+constexpr int kReported = 50;                  ///< refusals that are told, so that none fills a disk
+
+/// "localhost:8000" without the port.
+std::string host_of(std::string_view authority) {
+  const std::size_t colon = authority.rfind(':');
+  const bool port = colon != std::string_view::npos && authority.find(']', colon) == std::string_view::npos;
+  return std::string(authority.substr(0, port ? colon : authority.size()));
+}
+
+/// In a time that does not tell how much of it is right.
+bool same(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned char off = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) off |= static_cast<unsigned char>(a[i] ^ b[i]);
+  return off == 0;
+}
+
+/// The value of `token` in "/live?token=...".
+std::string_view token_of(std::string_view target) {
+  const std::size_t at = target.find("?token=");
+  return at == std::string_view::npos ? std::string_view() : target.substr(at + 7);
+}
+
+std::string_view text_of(beast::string_view own) { return {own.data(), own.size()}; }
+
+using HttpRequest = http::request<http::empty_body>;
+
+}  // namespace
+
+struct Server::Own {
+  Own(const Place& at, Behind what) : place(at), behind(std::move(what)), acceptor(context) {}
+
+  class Page;
+  class Visit;
+
+  void accept();
+  /// Why a visitor may not come in; empty: may.
+  std::string refusal(const HttpRequest& request, bool live) const;
+  void report(const std::string& text) {
+    if (++reported > kReported) return;
+    if (behind.report) behind.report(text + (reported == kReported ? " (and so on: no more is told)" : ""));
+  }
+
+  Place place;
+  Behind behind;
+  asio::io_context context{1};
+  tcp::acceptor acceptor;
+  std::set<std::shared_ptr<Page>> pages;
+  int visits = 0;
+  int reported = 0;
+  Bytes last;
+  std::thread thread;
+};
+
+/// A page that looks on. Everything happens on the server's thread.
+class Server::Own::Page : public std::enable_shared_from_this<Page> {
+ public:
+  Page(Own& own, tcp::socket socket) : own_(own), socket_(std::move(socket)) {}
+
+  void open(const HttpRequest& request) {
+    websocket::stream_base::timeout patience = websocket::stream_base::timeout::suggested(beast::role_type::server);
+    patience.idle_timeout = std::chrono::seconds(60);
+    socket_.set_option(patience);
+    socket_.read_message_max(kLongestRequest);
+    socket_.async_accept(request, [self = shared_from_this()](Error error) {
+      if (error) return;
+      if (self->own_.pages.size() >= kMostPages) {
+        self->own_.report("a page was refused: there are many already");
+        self->socket_.async_close({websocket::close_code::try_again_later, "too many pages"}, [self](Error) {});
+        return;
+      }
+      self->own_.pages.insert(self);
+      self->scene_ = std::make_shared<const std::string>(self->own_.behind.scene());
+      self->frame_ = self->own_.last;
+      self->write();
+      self->read();
+    });
+  }
+
+  void offer(const Bytes& frame) {
+    frame_ = frame;
+    write();
+  }
+
+ private:
+  void leave() { own_.pages.erase(shared_from_this()); }
+
+  void read() {
+    socket_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
+      if (error) {
+        if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow)
+          self->own_.report("a page was closed: its message was too long");
+        return self->leave();
+      }
+      self->take(beast::buffers_to_string(self->buffer_.data()));
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+
+  void take(const std::string& text) {
+    try {
+      const Request request = own_.behind.read(text);
+      if (std::holds_alternative<Ack>(request)) {
+        drawn_ = sent_;
+        write();
+      } else {
+        own_.behind.take(request);
+      }
+    } catch (const InputError& error) {
+      own_.report(fmt::format("a message was refused: {}", error.what()));
+      answer_ = nlohmann::json{{"refused", error.what()}}.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+      write();
+    }
+  }
+
+  /// The next thing that is to be sent, if nothing is on its way.
+  void write() {
+    if (writing_) return;
+    if (scene_) return send(std::move(scene_), true);
+    if (!answer_.empty()) return send(std::make_shared<const std::string>(std::exchange(answer_, {})), false);
+    if (!frame_ || sent_ - drawn_ >= kAhead) return;
+    ++sent_;
+    send(std::exchange(frame_, nullptr), true);
+  }
+
+  void send(Bytes bytes, bool binary) {
+    writing_ = true;
+    socket_.binary(binary);
+    const auto buffer = asio::buffer(*bytes);
+    socket_.async_write(buffer, [self = shared_from_this(), kept = std::move(bytes)](Error error, std::size_t) {
+      self->writing_ = false;
+      if (error) return self->leave();
+      self->write();
+    });
+  }
+
+  Own& own_;
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer buffer_{kLongestRequest + 1024};
+  Bytes scene_, frame_;
+  std::string answer_;
+  long sent_ = 0, drawn_ = 0;
+  bool writing_ = false;
+};
+
+/// Somebody who asks for the page, or to look on.
+class Server::Own::Visit : public std::enable_shared_from_this<Visit> {
+ public:
+  Visit(Own& own, tcp::socket socket) : own_(own), stream_(std::move(socket)) { ++own_.visits; }
+  ~Visit() { --own_.visits; }
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(8 * 1024);
+    parser_->body_limit(0);
+    stream_.expires_after(kPatience);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
+      if (!error) self->answer();
+    });
+  }
+
+ private:
+  void answer() {
+    const HttpRequest& request = parser_->get();
+    const std::string_view target = text_of(request.target());
+    const std::string_view path = target.substr(0, target.find('?'));
+    const bool live = websocket::is_upgrade(request);
+    const std::string refusal = own_.refusal(request, live);
+    if (!refusal.empty()) {
+      own_.report(refusal);
+      return send(http::status::forbidden, "text/plain; charset=utf-8",
+                  refusal + "\nOpen the address that `sinew view` printed.\n");
+    }
+    if (live && path == "/live") {
+      stream_.expires_never();
+      std::make_shared<Page>(own_, stream_.release_socket())->open(request);
+      return;
+    }
+    if (request.method() != http::verb::get || path != "/")
+      return send(http::status::not_found, "text/plain; charset=utf-8", "There is nothing here.\n");
+    send(http::status::ok, "text/html; charset=utf-8", own_.behind.page);
+  }
+
+  void send(http::status status, const char* type, const std::string& text) {
+    auto response = std::make_shared<http::response<http::string_body>>(status, 11);
+    response->set(http::field::server, "sinew");
+    response->set(http::field::content_type, type);
+    response->set(http::field::cache_control, "no-store");
+    response->set("Referrer-Policy", "no-referrer");
+    response->set("X-Content-Type-Options", "nosniff");
+    response->set("Content-Security-Policy",
+                  "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+                  "media-src blob:; connect-src 'self' ws: wss:");
+    response->keep_alive(false);
+    response->body() = text;
+    response->prepare_payload();
+    stream_.expires_after(kPatience);
+    http::async_write(stream_, *response, [self = shared_from_this(), response](Error, std::size_t) {
+      Error ignored;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    });
+  }
+
+  Own& own_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{16 * 1024};
+  std::optional<http::request_parser<http::empty_body>> parser_;
+};
+
+std::string Server::Own::refusal(const HttpRequest& request, bool live) const {
+  const std::string_view authority = text_of(request[http::field::host]);
+  const std::string host = host_of(authority);
+  const bool known = host == "localhost" || host == "127.0.0.1" || host == "[::1]" || host == place.address ||
+                     host == "[" + place.address + "]";
+  if (!known) return fmt::format("refused: the host {} is not this machine", io::show(host));
+  const std::string_view origin = text_of(request[http::field::origin]);
+  if (live && !origin.empty() && origin != "http://" + std::string(authority) &&
+      origin != "https://" + std::string(authority))
+    return fmt::format("refused: a page of {} wants to look on", io::show(std::string(origin)));
+  if (!same(token_of(text_of(request.target())), place.token))
+    return "refused: the token is missing, or not the one of this run";
+  return "";
+}
+
+void Server::Own::accept() {
+  acceptor.async_accept([this](Error error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error && visits < 4 * kMostPages) {
+      Error ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      std::make_shared<Visit>(*this, std::move(socket))->read();
+    }
+    accept();
+  });
+}
+
+Server::Server(const Place& place, Behind behind) : own_(std::make_unique<Own>(place, std::move(behind))) {
+  Error error;
+  const asio::ip::address address = asio::ip::make_address(place.address, error);
+  const auto fail = [&](const std::string& why) {
+    throw InputError({.path = "--bind",
+                      .value = fmt::format("{}:{}", place.address, place.port),
+                      .rule = "cannot be listened on: " + why,
+                      .remedy = "choose another --port, or leave it out"});
+  };
+  if (error) fail("it is no numeric address");
+  const tcp::endpoint endpoint(address, static_cast<unsigned short>(place.port));
+  own_->acceptor.open(endpoint.protocol(), error);
+  if (!error) own_->acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) own_->acceptor.bind(endpoint, error);
+  if (!error) own_->acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) fail(error.message());
+  own_->accept();
+  own_->thread = std::thread([own = own_.get()] { own->context.run(); });
+}
+
+Server::~Server() {
+  own_->context.stop();
+  own_->thread.join();
+  own_->pages.clear();
+}
+
+int Server::port() const { return own_->acceptor.local_endpoint().port(); }
+
+void Server::publish(Bytes frame) {
+  asio::post(own_->context, [own = own_.get(), frame = std::move(frame)] {
+    own->last = frame;
+    for (const std::shared_ptr<Own::Page>& page : std::set(own->pages)) page->offer(frame);
+  });
+}
+
+std::string random_token() {
+  std::random_device random;
+  std::string all;
+  for (int i = 0; i < 4; ++i) all += fmt::format("{:08x}", static_cast<std::uint32_t>(random()));
+  return all;
+}
+
+}  // namespace sinew::live

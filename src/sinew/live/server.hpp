@@ -1,0 +1,54 @@
+// Serves the page and, over a WebSocket, what it shows and asks for.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sinew/live/request.hpp"
+#include "sinew/live/stage.hpp"
+
+namespace sinew::live {
+
+/// Who may come: those who know the token, from pages of this very address. Hosts other than this machine's own name
+/// (localhost, 127.0.0.1, [::1]) and `address` are refused, so that no other site's name can stand for it.
+struct Place {
+  std::string address = "127.0.0.1";  ///< numeric; of one of this machine's interfaces
+  int port = 0;                       ///< 0: any that is free
+  std::string token;                  ///< not empty
+};
+
+/// What is behind the page. Called on the server's thread.
+struct Behind {
+  std::string page;                                     ///< HTML, all in one
+  std::function<std::string()> scene;                   ///< the first message to everyone who comes
+  std::function<Request(std::string_view)> read;        ///< throws InputError
+  std::function<void(const Request&)> take;             ///< but acks, which are the server's own
+  std::function<void(const std::string& text)> report;  ///< of what was refused, for people
+};
+
+/// Frames go to every page that has drawn the last ones; one that is slow gets the newest when it can, and keeps
+/// nobody waiting. At most kMostPages at a time.
+class Server {
+ public:
+  static constexpr int kMostPages = 32;
+
+  /// Listens, on a thread of its own. Throws InputError where it cannot.
+  Server(const Place& place, Behind behind);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  int port() const;
+  /// For every page; from any thread.
+  void publish(Bytes frame);
+
+ private:
+  struct Own;
+  std::unique_ptr<Own> own_;
+};
+
+/// 128 random bits as 32 hexadecimal digits.
+std::string random_token();
+
+}  // namespace sinew::live

@@ -1,0 +1,235 @@
+// The server: who may come, what happens to those who say too much, and to those who do not listen.
+#include "sinew/live/server.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <random>
+
+#include "sinew/error/input_error.hpp"
+#include "sinew/runs/loaded_scene.hpp"
+
+namespace sinew::live {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = boost::asio::ip::tcp;
+using testing::HasSubstr;
+
+const std::string kToken = "0123456789abcdef";
+
+/// A server in front of nothing: what is asked is counted.
+class PageServer : public testing::Test {
+ protected:
+  PageServer() {
+    Behind behind;
+    behind.page = "<!doctype html>the page";
+    behind.scene = [] { return std::string("scene"); };
+    behind.read = [this](std::string_view text) { return read_request(text, loaded_.model); };
+    behind.take = [this](const Request&) { ++taken_; };
+    behind.report = [this](const std::string& text) {
+      const std::lock_guard lock(mutex_);
+      reports_.push_back(text);
+    };
+    server_ = std::make_unique<Server>(Place{"127.0.0.1", 0, kToken}, behind);
+    host_ = "127.0.0.1:" + std::to_string(server_->port());
+  }
+
+  tcp::socket socket() {
+    tcp::socket own(context_);
+    own.connect({boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(server_->port())});
+    return own;
+  }
+
+  http::response<http::string_body> get(const std::string& target, const std::string& host) {
+    tcp::socket own = socket();
+    http::request<http::empty_body> request(http::verb::get, target, 11);
+    request.set(http::field::host, host);
+    http::write(own, request);
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(own, buffer, response);
+    return response;
+  }
+
+  using Page = websocket::stream<tcp::socket>;
+  /// Comes in, or throws.
+  std::unique_ptr<Page> come(const std::string& token = kToken, const std::string& origin = "",
+                             const std::string& host = "") {
+    auto page = std::make_unique<Page>(socket());
+    page->set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
+      if (!origin.empty()) request.set(http::field::origin, origin);
+    }));
+    page->handshake(host.empty() ? host_ : host, "/live?token=" + token);
+    return page;
+  }
+
+  static std::string next(Page& page) {
+    beast::flat_buffer buffer;
+    page.read(buffer);
+    return beast::buffers_to_string(buffer.data());
+  }
+
+  static void say(Page& page, const std::string& text) {
+    page.text(true);
+    page.write(boost::asio::buffer(text));
+  }
+
+  std::vector<std::string> reports() {
+    const std::lock_guard lock(mutex_);
+    return reports_;
+  }
+
+  runs::LoadedScene loaded_ = runs::load(io::read_scene(SINEW_SOURCE_DIR "/examples/finger.yaml"));
+  boost::asio::io_context context_;
+  std::atomic<int> taken_ = 0;
+  std::mutex mutex_;
+  std::vector<std::string> reports_;
+  std::unique_ptr<Server> server_;
+  std::string host_;
+};
+
+TEST_F(PageServer, GivesThePageToWhoKnowsTheToken) {
+  const auto response = get("/?token=" + kToken, host_);
+  EXPECT_EQ(response.result_int(), 200u);
+  EXPECT_EQ(response.body(), "<!doctype html>the page");
+  EXPECT_EQ(get("/?token=" + kToken, "localhost:1234").result_int(), 200u);  // a tunnel of SSH
+  EXPECT_EQ(get("/etc/passwd?token=" + kToken, host_).result_int(), 404u);
+}
+
+TEST_F(PageServer, RefusesWhoDoesNot) {
+  EXPECT_EQ(get("/", host_).result_int(), 403u);
+  EXPECT_EQ(get("/?token=0123456789abcdee", host_).result_int(), 403u);
+  EXPECT_EQ(get("/?token=" + kToken + "0", host_).result_int(), 403u);
+  const auto rebound = get("/?token=" + kToken, "evil.example:" + std::to_string(server_->port()));
+  EXPECT_EQ(rebound.result_int(), 403u);
+  EXPECT_THAT(rebound.body(), HasSubstr("not this machine"));
+  EXPECT_THROW(come("wrong"), beast::system_error);
+  EXPECT_THROW(come(kToken, "http://evil.example"), beast::system_error);
+  EXPECT_THROW(come(kToken, "null"), beast::system_error);
+  EXPECT_THROW(come(kToken, "", "evil.example"), beast::system_error);
+  EXPECT_NO_THROW(come(kToken, "http://" + host_));
+  EXPECT_EQ(reports().size(), 8u);
+}
+
+TEST_F(PageServer, SendsTheSceneThenFramesAsTheyAreDrawn) {
+  const auto page = come();
+  EXPECT_EQ(next(*page), "scene");
+  server_->publish(std::make_shared<const std::string>("1"));
+  EXPECT_EQ(next(*page), "1");
+  server_->publish(std::make_shared<const std::string>("2"));
+  EXPECT_EQ(next(*page), "2");
+  // Two have not been drawn: others wait, and only the last of them is kept.
+  for (int i = 3; i < 50; ++i) server_->publish(std::make_shared<const std::string>(std::to_string(i)));
+  say(*page, R"({"do": "ack", "frame": 2})");
+  EXPECT_EQ(next(*page), "49");
+}
+
+TEST_F(PageServer, AnswersWhatItDoesNotTakeAndGoesOn) {
+  const auto page = come();
+  next(*page);
+  say(*page, R"({"do": "dance"})");
+  EXPECT_THAT(next(*page), HasSubstr("refused"));
+  say(*page, R"({"do": "play"})");
+  say(*page, "\"");
+  EXPECT_THAT(next(*page), HasSubstr("refused"));
+  EXPECT_EQ(taken_, 1);
+}
+
+TEST_F(PageServer, ClosesOnMessagesThatAreTooLong) {
+  const auto page = come();
+  next(*page);
+  say(*page, std::string(kLongestRequest + 1, ' '));
+  EXPECT_THROW(
+      {
+        for (;;) next(*page);
+      },
+      beast::system_error);
+  EXPECT_EQ(get("/?token=" + kToken, host_).result_int(), 200u);  // still there
+  EXPECT_THAT(reports(), testing::Contains(HasSubstr("too long")));
+}
+
+TEST_F(PageServer, SurvivesWhatIsNoHttp) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 200; ++i) {
+    tcp::socket own = socket();
+    std::string rubbish(1 + random() % 2000, '\0');
+    for (char& letter : rubbish) letter = static_cast<char>(random());
+    if (i % 3 == 0) rubbish = "GET /live?token=" + kToken + " HTTP/1.1\r\nUpgrade: websocket\r\n" + rubbish;
+    if (i % 3 == 1) rubbish = "GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n\r\n";
+    beast::error_code ignored;
+    boost::asio::write(own, boost::asio::buffer(rubbish), ignored);
+  }
+  EXPECT_EQ(get("/?token=" + kToken, host_).result_int(), 200u);
+}
+
+TEST_F(PageServer, SurvivesAHundredThousandMessages) {
+  std::mt19937 random(5);
+  const auto page = come();
+  next(*page);
+  const std::string seed = R"({"do": "tell", "actuator": "pull", "value": 0.001})";
+  std::thread listener([&page] {
+    try {
+      for (;;) next(*page);
+    } catch (const beast::system_error&) {
+    }
+  });
+  for (int i = 0; i < 100000; ++i) {
+    std::string text = seed;
+    for (auto k = random() % 3; k > 0; --k) text[random() % text.size()] = static_cast<char>(32 + random() % 95);
+    say(*page, text);
+  }
+  say(*page, R"({"do": "play"})");
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (taken_ < 20000 && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+  EXPECT_GE(taken_, 20000);
+  EXPECT_LE(reports().size(), 50u);  // a few are told, a disk is not filled
+  EXPECT_EQ(get("/?token=" + kToken, host_).result_int(), 200u);
+  beast::error_code ignored;
+  page->next_layer().shutdown(tcp::socket::shutdown_both, ignored);
+  listener.join();
+}
+
+TEST_F(PageServer, HasRoomForSoManyAndNoMore) {
+  std::vector<std::unique_ptr<Page>> pages;
+  for (int i = 0; i < Server::kMostPages; ++i) {
+    pages.push_back(come());
+    EXPECT_EQ(next(*pages.back()), "scene");
+  }
+  const auto more = come();
+  EXPECT_THROW(next(*more), beast::system_error);
+  pages.clear();  // those who leave make room
+  for (int tries = 0;; ++tries) {
+    const auto again = come();
+    beast::flat_buffer buffer;
+    beast::error_code error;
+    again->read(buffer, error);
+    if (!error) break;
+    ASSERT_LT(tries, 1000);
+  }
+}
+
+TEST(Place, ThatCannotBeListenedOnIsTold) {
+  const auto refusal = [](const Place& place) -> std::string {
+    try {
+      const Server server(place, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal({"nowhere", 0, kToken}), HasSubstr("numeric"));
+  EXPECT_THAT(refusal({"203.0.113.1", 0, kToken}), HasSubstr("cannot be listened on"));
+  EXPECT_EQ(random_token().size(), 32u);
+  EXPECT_NE(random_token(), random_token());
+}
+
+}  // namespace
+}  // namespace sinew::live

@@ -1,0 +1,276 @@
+// The page: what comes goes to the view, the panel and the plots; what hands do goes back.
+
+import "uplot/dist/uPlot.min.css";
+import * as THREE from "three";
+
+import { gradient, quantity } from "./colors";
+import { download, make } from "./dom";
+import type { Any, FrameMessage, Request, SceneMessage } from "./message";
+import { Panel } from "./panel";
+import { Plots } from "./plots";
+import { connect, embedded, type Source } from "./source";
+import { View, type Hit, type Look } from "./view";
+
+const find = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const canvas = find<HTMLCanvasElement>("view");
+const view = new View(canvas);
+const plots = new Plots(find("plots"));
+const status = find("status");
+const trouble = find("trouble");
+const legend = find("legend");
+const help = find<HTMLDialogElement>("help");
+
+let source: Source | null = null;
+let scene: SceneMessage | null = null;
+let latest: FrameMessage | null = null;
+let fresh = false;
+let stiffness = 100;
+let film: MediaRecorder | null = null;
+let refusal = "";
+let linked = false;
+
+/** What tests and the curious look at: window.sinew. */
+const tally = { frames: 0, draws: 0, scriptMs: 0, worstMs: 0 };
+
+const ask = (request: Request): void => source?.ask(request);
+
+function askToShow(): void {
+  const { solids, rods } = view.look;
+  ask({ do: "show", solids: solids === "displacement" ? "" : solids, rods });
+}
+
+const panel = new Panel(find("panel"), {
+  ask,
+  look(change: Partial<Look>) {
+    Object.assign(view.look, change);
+    if ("solids" in change || "rods" in change) askToShow();
+    view.apply();
+    showLegend();
+  },
+  camera: (preset) => view.preset(preset),
+  picture: () => canvas.toBlob((blob) => blob && download("sinew.png", blob)),
+  video() {
+    if (film) {
+      film.stop();
+      film = null;
+      return false;
+    }
+    const parts: Blob[] = [];
+    film = new MediaRecorder(canvas.captureStream(60), { mimeType: "video/webm" });
+    film.ondataavailable = (event) => parts.push(event.data);
+    film.onstop = () => download("sinew.webm", new Blob(parts, { type: "video/webm" }));
+    film.start();
+    return true;
+  },
+  plots() {
+    find("plots").hidden = !find("plots").hidden;
+    plots.draw();
+  },
+  help: () => help.showModal(),
+  stiffness: (value) => (stiffness = value),
+});
+
+// What comes.
+
+function take(own: Any): void {
+  if (own.kind === "scene") {
+    scene = own.message;
+    latest = null;
+    view.build(scene);
+    panel.build(scene, view.look);
+    plots.build(scene);
+    askToShow();
+  } else {
+    latest = own.message;
+    fresh = true;
+    tally.frames += 1;
+  }
+}
+
+function tick(): void {
+  requestAnimationFrame(tick);
+  const begin = performance.now();
+  if (fresh && latest && scene) {
+    fresh = false;
+    view.show(latest);
+    if (held?.hit.kind === "solid") showHand();
+    panel.show(latest);
+    plots.add(latest);
+    showStatus();
+    showLegend();
+    ask({ do: "ack", frame: latest.head.frame });
+  }
+  const spent = performance.now() - begin;
+  if (view.draw()) {
+    tally.draws += 1;
+    tally.scriptMs = tally.draws === 1 ? spent : 0.95 * tally.scriptMs + 0.05 * spent;
+    tally.worstMs = Math.max(tally.worstMs, spent);
+  }
+}
+
+function showStatus(): void {
+  const { head } = latest!;
+  const parts: [string, string][] = [[head.when, "time"]];
+  if (head.realtime !== undefined) parts.push([`${head.realtime.toFixed(2)}× real time`, "realtime"]);
+  if (head.step_ms !== undefined) parts.push([`step ${head.step_ms.toFixed(2)} ms`, "step"]);
+  parts.push([`${head.newton} Newton`, "newton"]);
+  if (head.contacts) parts.push([`${head.contacts} contacts`, "contacts"]);
+  parts.push([head.status, "state"]);
+  if (head.targets) parts.push([head.targets, head.targets.startsWith("reached") ? "fine" : "warning"]);
+  if (!linked) parts.push(["connection lost; trying again", "warning"]);
+  if (refusal) parts.push([refusal, "warning"]);
+  status.replaceChildren(...parts.map(([text, name]) => make("span", { class: name, text })));
+  trouble.hidden = !head.trouble;
+  trouble.textContent = head.trouble ? `Stopped: ${head.trouble}` : "";
+}
+
+function showLegend(): void {
+  if (!scene) return;
+  const { solids, rods, map } = view.look;
+  const name = scene.head.solids.length > 0 && solids ? solids : rods;
+  legend.hidden = !name;
+  if (!name) return;
+  const unit =
+    name === "displacement" ? "m" : [...scene.head.solid_fields, ...scene.head.rod_fields].find((own) => own.name === name)!.unit;
+  legend.replaceChildren(
+    make("span", { text: name.replaceAll("_", " ") }),
+    make("i", { style: `background: ${gradient(map)}` }),
+    make("span", { text: `${quantity(view.range.least, unit)} … ${quantity(view.range.most, unit)}` }),
+  );
+}
+
+const listener = {
+  message: take,
+  refused(why: string) {
+    refusal = why;
+    setTimeout(() => (refusal = ""), 4000);
+  },
+  connected(yes: boolean) {
+    linked = yes;
+    document.body.classList.toggle("lost", !yes);
+    if (!yes) {
+      status.replaceChildren(make("span", { class: "warning", text: "No connection; trying again. Does `sinew view` still run?" }));
+    }
+  },
+};
+
+// What hands do.
+
+let held: { hit: Hit; to: THREE.Vector3; pointer: number } | null = null;
+
+function place(event: PointerEvent): { x: number; y: number } {
+  const box = canvas.getBoundingClientRect();
+  return { x: event.clientX - box.left, y: event.clientY - box.top };
+}
+
+function showHand(): void {
+  if (held?.hit.kind === "solid") view.showHand([view.cornerPosition(held.hit.number, held.hit.node), held.to]);
+}
+
+function pull(): void {
+  if (!held || !scene) return;
+  const to = held.to.toArray();
+  if (held.hit.kind === "target") {
+    const targets = scene.head.targets.filter((own) => own.position);
+    ask({ do: "aim", target: targets[held.hit.number]!.name, at: to });
+  } else {
+    const solid = scene.head.solids[held.hit.number]!.name;
+    ask({ do: "grip", solid, node: view.meshNode(held.hit.number, held.hit.node), to, stiffness });
+    showHand();
+  }
+}
+
+canvas.addEventListener(
+  "pointerdown",
+  (event) => {
+    if (event.button !== 0 || scene?.head.mode !== "live" || event.altKey) return;
+    const { x, y } = place(event);
+    const hit = view.pick(x, y);
+    if (!hit) return;
+    held = { hit, to: hit.point.clone(), pointer: event.pointerId };
+    view.controls.enabled = false;
+    canvas.setPointerCapture(event.pointerId);
+    canvas.classList.add("holding");
+  },
+  { capture: true },
+);
+canvas.addEventListener("pointermove", (event) => {
+  const { x, y } = place(event);
+  if (!held) {
+    if (event.buttons === 0 && scene?.head.mode === "live") canvas.classList.toggle("over", view.pick(x, y) !== null);
+    return;
+  }
+  held.to = view.under(x, y, held.to);
+  pull();
+});
+const release = (): void => {
+  if (!held) return;
+  if (held.hit.kind === "solid") ask({ do: "release" });
+  held = null;
+  view.controls.enabled = true;
+  view.showHand(null);
+  canvas.classList.remove("holding");
+};
+canvas.addEventListener("pointerup", release);
+canvas.addEventListener("pointercancel", release);
+
+help.append(
+  make("h2", { text: "What you can do" }),
+  make(
+    "dl",
+    {},
+    ...[
+      ["Drag a red ball", "moves the target: the motors follow, as far as their limits allow"],
+      ["Drag the body", "pulls at it by a spring (red); Hand in the panel is its stiffness"],
+      ["Drag beside it, or with Alt", "turns the view; right button or two fingers shift it, the wheel comes nearer"],
+      ["Sliders", "tell a motor what to do; the button beside gives it back"],
+      ["Space, ., R", "play or pause, one step, reset"],
+      ["1 2 3 4", "views from the corner, front, side, top"],
+      ["P, G, H", "picture, plots, this help"],
+    ].flatMap(([term, text]) => [make("dt", { text: term! }), make("dd", { text: text! })]),
+  ),
+  make("button", { text: "Close", onclick: () => help.close() }),
+);
+
+addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || (event.target as HTMLElement).matches("input, select, button, dialog *")) return;
+  const presets = { "1": "corner", "2": "front", "3": "side", "4": "top" } as const;
+  if (event.key in presets) view.preset(presets[event.key as keyof typeof presets]);
+  else if (event.key === " ") panel.toggle();
+  else if (event.key === ".") ask({ do: "step" });
+  else if (event.key === "r" || event.key === "R") ask({ do: "reset" });
+  else if (event.key === "p" || event.key === "P") canvas.toBlob((blob) => blob && download("sinew.png", blob));
+  else if (event.key === "g" || event.key === "G") {
+    find("plots").hidden = !find("plots").hidden;
+    plots.draw();
+  } else if (event.key === "h" || event.key === "H" || event.key === "?") help.showModal();
+  else return;
+  event.preventDefault();
+});
+
+declare global {
+  interface Window {
+    sinew: unknown;
+  }
+}
+window.sinew = {
+  tally,
+  scene: () => scene?.head,
+  frame: () => latest?.head,
+  told: () => Array.from(latest?.doubles("told") ?? []),
+  goals: () => Array.from(latest?.doubles("goals") ?? []),
+  outputs: () => Array.from(latest?.floats("outputs") ?? []),
+  project: (x: number, y: number, z: number) => view.project(new THREE.Vector3(x, y, z)),
+  csv: () => plots.csv(),
+};
+
+const run = document.getElementById("run");
+if (run) {
+  embedded(run.textContent ?? "", listener).then((own) => {
+    source = own;
+    askToShow();
+  }, (error: unknown) => (status.textContent = `The run in this file cannot be read: ${String(error)}`));
+} else {
+  source = connect(listener);
+}
+requestAnimationFrame(tick);

@@ -1,0 +1,155 @@
+// Signals over time, as they come.
+
+import uPlot from "uplot";
+
+import { palette, shownUnit } from "./colors";
+import { download, make } from "./dom";
+import type { FrameMessage, SceneMessage } from "./message";
+
+const LONGEST = 6000; // points kept; older ones go
+
+/** What is drawn together: signals of one unit whose names end alike. */
+interface Group {
+  name: string;
+  unit: string;
+  signals: number[];
+}
+
+function groupsOf(scene: SceneMessage): Group[] {
+  const kinds: [string, (name: string) => boolean][] = [
+    ["Forces of motors", (name) => name.endsWith(".force") || name.endsWith(".torque")],
+    ["Motors", (name) => name.endsWith(".displacement") || name.endsWith(".angle")],
+    ["How far targets are off", (name) => name.endsWith(".error")],
+    ["Energies", (name) => name.startsWith("energy.")],
+    ["Outputs", (name) => !name.includes(".target")],
+  ];
+  const left = new Set(scene.head.signals.keys());
+  const all: Group[] = [];
+  for (const [name, belongs] of kinds) {
+    const units = new Map<string, number[]>();
+    for (const i of left) {
+      const own = scene.head.signals[i]!;
+      if (!belongs(own.name)) continue;
+      units.set(own.unit, [...(units.get(own.unit) ?? []), i]);
+      left.delete(i);
+    }
+    for (const [unit, signals] of units) all.push({ name, unit, signals });
+  }
+  return all;
+}
+
+export class Plots {
+  private groups: Group[] = [];
+  private scene: SceneMessage | null = null;
+  private time: number[] = [];
+  private values: number[][] = [];
+  private shown: { group: number; plot: uPlot | null; place: HTMLElement }[] = [];
+  private drawn = 0;
+
+  constructor(private readonly place: HTMLElement) {}
+
+  build(scene: SceneMessage): void {
+    this.scene = scene;
+    this.groups = groupsOf(scene);
+    this.clear();
+    this.place.replaceChildren();
+    const first = this.groups.findIndex((own) => own.name.startsWith("How far"));
+    const choices = [0, first > 0 ? first : Math.min(1, this.groups.length - 1)];
+    this.shown = choices.slice(0, this.groups.length).map((group) => {
+      const place = make("div", { class: "plot" });
+      const own = { group, plot: null as uPlot | null, place };
+      const choice = make("select", {
+        "aria-label": "What is plotted",
+        onchange: (event) => {
+          own.group = Number((event.target as HTMLSelectElement).value);
+          this.make(own);
+        },
+      });
+      this.groups.forEach((one, i) =>
+        choice.append(make("option", { value: i, selected: i === group, text: `${one.name} [${shownUnit(one.unit)[0]}]` })),
+      );
+      place.append(choice);
+      this.place.append(place);
+      this.make(own);
+      return own;
+    });
+    this.place.append(make("button", { text: "Save as CSV", title: "What is plotted, in SI", onclick: () => this.save() }));
+  }
+
+  clear(): void {
+    this.time = [];
+    this.values = this.scene?.head.signals.map(() => []) ?? [];
+  }
+
+  private make(own: { group: number; plot: uPlot | null; place: HTMLElement }): void {
+    own.plot?.destroy();
+    const group = this.groups[own.group]!;
+    const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    const ink = dark ? "#c8ccd4" : "#30343c";
+    const axis = { stroke: ink, grid: { stroke: dark ? "#333a46" : "#dfe3e8", width: 1 }, font: "11px system-ui", size: 48 };
+    own.plot = new uPlot(
+      {
+        width: own.place.clientWidth || 360,
+        height: 150,
+        legend: { live: true },
+        cursor: { drag: { x: false, y: false } },
+        scales: { x: { time: false } },
+        axes: [{ ...axis, size: 28 }, { ...axis, values: (_: uPlot, ticks: number[]) => ticks.map((own) => String(Number(own.toPrecision(6)))) }],
+        series: [
+          { label: "t [s]" },
+          ...group.signals.map((i, k) => ({
+            label: this.scene!.head.signals[i]!.name,
+            stroke: palette[k % palette.length]!,
+            width: 1.5,
+            points: { show: false },
+          })),
+        ],
+      },
+      this.dataOf(group),
+      own.place,
+    );
+  }
+
+  private dataOf(group: Group): uPlot.AlignedData {
+    const factor = shownUnit(group.unit)[1];
+    return [this.time, ...group.signals.map((i) => this.values[i]!.map((value) => factor * value))];
+  }
+
+  add(frame: FrameMessage): void {
+    const last = this.time[this.time.length - 1];
+    if (last !== undefined && frame.head.time < last) this.clear();
+    if (last !== undefined && frame.head.time === last && this.time.length > 0) return;
+    this.time.push(frame.head.time);
+    const signals = frame.doubles("signals");
+    this.values.forEach((own, i) => own.push(signals[i]!));
+    if (this.time.length > LONGEST) {
+      this.time.splice(0, LONGEST / 10);
+      this.values.forEach((own) => own.splice(0, LONGEST / 10));
+    }
+    const now = performance.now();
+    if (this.place.hidden || now - this.drawn < 100) return;
+    this.drawn = now;
+    this.draw();
+  }
+
+  draw(): void {
+    for (const own of this.shown) {
+      if (own.plot && own.place.clientWidth > 0 && own.plot.width !== own.place.clientWidth) {
+        own.plot.setSize({ width: own.place.clientWidth, height: 150 });
+      }
+      own.plot?.setData(this.dataOf(this.groups[own.group]!));
+    }
+  }
+
+  /** What is plotted, in SI. */
+  csv(): string {
+    const signals = [...new Set(this.shown.flatMap((own) => this.groups[own.group]!.signals))];
+    const names = signals.map((i) => this.scene!.head.signals[i]!.name);
+    const rows = this.time.map((time, k) => [time, ...signals.map((i) => this.values[i]![k]!)].join(","));
+    return [["time", ...names].join(","), ...rows].join("\n") + "\n";
+  }
+
+  private save(): void {
+    download("sinew.csv", new Blob([this.csv()], { type: "text/csv" }));
+  }
+}

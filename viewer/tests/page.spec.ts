@@ -1,0 +1,252 @@
+// The page against the program, in a browser.
+
+import { expect, test, type Page } from "@playwright/test";
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+
+import { folder, root, Served, sinew } from "./server";
+
+interface Window {
+  sinew: {
+    tally: { frames: number; draws: number; scriptMs: number; worstMs: number };
+    scene(): { mode: string; actuators: { name: string; most: number }[]; times?: number[] };
+    frame(): { time: number; frame: number; targets: string; playing: boolean; trouble: string; mine: Record<string, number> };
+    told(): number[];
+    goals(): number[];
+    outputs(): number[];
+    project(x: number, y: number, z: number): { x: number; y: number };
+    csv(): string;
+  };
+}
+declare const window: Window;
+
+/** Opens it and waits for frames; complaints of the page fail the test. */
+async function open(page: Page, address: string): Promise<void> {
+  page.on("pageerror", (error) => {
+    throw error;
+  });
+  await page.goto(address);
+  await page.waitForFunction(() => window.sinew.tally.frames > 2 && window.sinew.tally.draws > 1);
+}
+
+/** How many pixels of the picture's middle are neither the background's colour nor near it. */
+async function painted(page: Page): Promise<number> {
+  return page.evaluate(() => {
+    const canvas = document.getElementById("view") as HTMLCanvasElement;
+    const copy = document.createElement("canvas");
+    copy.width = canvas.width;
+    copy.height = canvas.height;
+    const context = copy.getContext("2d")!;
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    const off = (i: number): number => [0, 1, 2].reduce((sum, k) => sum + Math.abs(data[i + k]! - data[k]!), 0);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += off(i) > 40 ? 1 : 0;
+    return count / (data.length / 4);
+  });
+}
+
+const tipX = (page: Page): Promise<number> => page.evaluate(() => window.sinew.outputs()[0]!);
+
+test("the robot is seen, and moves", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  await expect(page.locator("h1")).toHaveText(/finger/i);
+  expect(await painted(page)).toBeGreaterThan(0.02);
+  const before = await page.screenshot();
+  const tip = await tipX(page);
+  await page.getByRole("button", { name: "Reset" }).click(); // what it does may be over by now
+  await page.waitForFunction((from) => Math.abs(window.sinew.outputs()[0]! - from) > 1e-3, tip);
+  expect((await page.screenshot()).equals(before)).toBe(false);
+  await served.stop();
+});
+
+/** A target that stands still until it is dragged. */
+const still = ["--set", "targets.tip.at={times: [0, 1], values: [[0, 0, 0.19], [0.005, 0, 0.19]]}"];
+
+test("the target is dragged, and the tip follows", async ({ page }) => {
+  const served = await Served.start("examples/reach.yaml", ...still);
+  await open(page, served.address);
+  const grip = await page.evaluate(() => {
+    const goal = window.sinew.goals();
+    return window.sinew.project(goal[0]!, goal[1]!, goal[2]!);
+  });
+  await page.mouse.move(grip.x, grip.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 12; ++i) {
+    await page.mouse.move(grip.x - 4 * i, grip.y + 1.5 * i);
+    await page.waitForTimeout(20);
+  }
+  await page.mouse.up();
+  // The height is free in this scene.
+  await page.waitForFunction(() => {
+    const [goal, tip] = [window.sinew.goals(), window.sinew.outputs()];
+    return Math.hypot(goal[0]! - tip[0]!, goal[1]! - tip[1]!) < 1e-3;
+  });
+  const moved = await page.evaluate(() => window.sinew.goals());
+  await page.waitForTimeout(500);
+  expect(await page.evaluate(() => window.sinew.goals())).toEqual(moved); // it stays, whatever the scene says
+  const away = await page.evaluate(() => {
+    const goal = window.sinew.goals();
+    return window.sinew.project(goal[0]!, goal[1]!, goal[2]!);
+  });
+  expect(Math.hypot(away.x - (grip.x - 48), away.y - (grip.y + 18))).toBeLessThan(3); // under the pointer
+  await page.locator(".target button").click();
+  await page.waitForFunction((at) => Math.abs(window.sinew.goals()[0]! - at) > 1e-6, moved[0]!);
+  await served.stop();
+});
+
+test("a target out of reach is told, with what is in the way", async ({ page }) => {
+  const served = await Served.start("examples/reach.yaml", ...still);
+  await open(page, served.address);
+  const grip = await page.evaluate(() => {
+    const goal = window.sinew.goals();
+    return window.sinew.project(goal[0]!, goal[1]!, goal[2]!);
+  });
+  await page.mouse.move(grip.x, grip.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 25; ++i) {
+    await page.mouse.move(grip.x + 18 * i, grip.y + 2 * i);
+    await page.waitForTimeout(20);
+  }
+  await expect(page.locator("#status .warning")).toContainText(/force at most/, { timeout: 20_000 });
+  await page.mouse.up();
+  await served.stop();
+});
+
+test("a slider moves the finger", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  const slider = page.locator("[data-actuator=pull]");
+  await slider.fill("0.004");
+  await page.waitForFunction(() => Math.abs(window.sinew.told()[0]! - 0.004) < 1e-4);
+  expect(await page.evaluate(() => window.sinew.frame().mine.pull)).toBeCloseTo(0.004, 4);
+  await page.locator(".motor .auto").click();
+  await page.waitForFunction(() => Object.keys(window.sinew.frame().mine).length === 0);
+  await served.stop();
+});
+
+test("the body is pulled at with the mouse", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml", "--set", "actuators.pull.displacement=0 mm");
+  await open(page, served.address);
+  await page.waitForTimeout(500);
+  const tip = await page.evaluate(() => window.sinew.outputs());
+  const at = await page.evaluate(([x, y, z]) => window.sinew.project(x! - 0.008, y!, z!), tip);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 15; ++i) {
+    await page.mouse.move(at.x, at.y + 6 * i);
+    await page.waitForTimeout(20);
+  }
+  await page.waitForFunction((z) => window.sinew.outputs()[2]! < z - 2e-3, tip[2]!);
+  await page.mouse.up();
+  await page.waitForFunction((z) => Math.abs(window.sinew.outputs()[2]! - z) < 1.5e-3, tip[2]!);
+  await served.stop();
+});
+
+test("pause, step, reset", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await page.waitForFunction(() => !window.sinew.frame().playing);
+  const time = await page.evaluate(() => window.sinew.frame().time);
+  await page.getByRole("button", { name: "Step" }).click();
+  await page.waitForFunction((before) => Math.abs(window.sinew.frame().time - before - 0.01) < 1e-9, time);
+  await page.getByRole("button", { name: "Reset" }).click();
+  await page.waitForFunction(() => window.sinew.frame().time === 0);
+  await page.locator("#view").press(" ");
+  await page.waitForFunction(() => window.sinew.frame().playing);
+  await served.stop();
+});
+
+test("a recorded run scrubs", async ({ page }) => {
+  const out = join(folder(), "finger");
+  sinew("run", "examples/finger.yaml", "-o", out, "-q", "--set", "time.duration=0.5 s");
+  const served = await Served.start(out);
+  await open(page, served.address);
+  expect(await page.evaluate(() => window.sinew.scene().times!.length)).toBe(51);
+  const timeline = page.locator("#timeline");
+  await timeline.fill("17");
+  await page.waitForFunction(() => window.sinew.frame().frame === 17);
+  expect(await page.evaluate(() => window.sinew.frame().time)).toBeCloseTo(0.17, 9);
+  const bent = await page.evaluate(() => window.sinew.outputs());
+  await timeline.fill("0");
+  await page.waitForFunction(() => window.sinew.frame().frame === 0);
+  expect(await page.evaluate(() => window.sinew.outputs())).not.toEqual(bent);
+  await page.waitForFunction(() => !window.sinew.frame().playing);
+  await served.stop();
+});
+
+test("it connects again when the server is back", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  await served.stop();
+  await expect(page.locator("#status")).toContainText("No connection");
+  const again = await Served.start("examples/finger.yaml", "--port", served.port);
+  const frames = await page.evaluate(() => window.sinew.tally.frames);
+  await page.waitForFunction((before) => window.sinew.tally.frames > before + 5, frames);
+  await expect(page.locator("#status")).not.toContainText("No connection");
+  await again.stop();
+});
+
+test("an exported run plays from the disk without a network", async ({ page, context }) => {
+  const place = folder();
+  sinew("run", "examples/finger.yaml", "-o", join(place, "out"), "-q", "--set", "time.duration=0.5 s");
+  sinew("export", join(place, "out"), "-o", join(place, "finger.html"));
+  await context.setOffline(true);
+  const asked: string[] = [];
+  page.on("request", (request) => asked.push(request.url()));
+  await open(page, `file://${join(place, "finger.html")}`);
+  expect(await painted(page)).toBeGreaterThan(0.02);
+  await page.waitForFunction(() => window.sinew.frame().frame === 50 && !window.sinew.frame().playing);
+  await page.locator("#timeline").fill("10");
+  await page.waitForFunction(() => window.sinew.frame().frame === 10);
+  expect(asked.filter((url) => !url.startsWith("file:") && !url.startsWith("data:") && !url.startsWith("blob:"))).toEqual([]);
+});
+
+test("plots follow, and are saved", async ({ page }) => {
+  const served = await Served.start("examples/reach.yaml");
+  await open(page, served.address);
+  await page.locator("#view").press("g");
+  await expect(page.locator("#plots canvas")).toHaveCount(2);
+  await page.waitForFunction(() => window.sinew.csv().split("\n").length > 20);
+  const csv = await page.evaluate(() => window.sinew.csv());
+  const rows = csv.trim().split("\n");
+  expect(rows[0]).toContain("pull_right.force");
+  const times = rows.slice(1).map((row) => Number(row.split(",")[0]));
+  expect(times.every((time, i) => i === 0 || time > times[i - 1]!)).toBe(true);
+  await served.stop();
+});
+
+test("nobody without the token gets in", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml");
+  const response = await page.goto(served.address.replace(/token=.*/, "token=none"));
+  expect(response!.status()).toBe(403);
+  await expect(page.locator("body")).toContainText("Open the address that `sinew view` printed");
+  await served.stop();
+});
+
+test("the script of a frame takes less than 8 ms, and the server's part less than 1 ms", async ({ page }) => {
+  const served = await Served.start("examples/reach.yaml");
+  await open(page, served.address);
+  await page.waitForTimeout(4000);
+  const { scriptMs } = await page.evaluate(() => window.sinew.tally);
+  const frame = (await page.evaluate(() => window.sinew.frame())) as unknown as { frame_ms: number };
+  console.log(`script ${scriptMs.toFixed(2)} ms, server ${frame.frame_ms.toFixed(2)} ms a frame`);
+  await served.stop();
+});
+
+for (const file of readdirSync(join(root, "examples")).filter((name) => name.endsWith(".yaml"))) {
+  test(`a picture of ${file}`, async ({ page }) => {
+    const text = readFileSync(join(root, "examples", file), "utf8");
+    const still = /^analysis: (static|modal)/m.test(text);
+    const out = join(folder(), "out");
+    if (still) sinew("run", `examples/${file}`, "-o", out, "-q");
+    const served = await Served.start(still ? out : `examples/${file}`);
+    await open(page, served.address);
+    await page.waitForTimeout(3000);
+    expect(await painted(page)).toBeGreaterThan(0.005);
+    await page.screenshot({ path: join(root, "viewer/test-results", `${file}.png`) });
+    await served.stop();
+  });
+}
