@@ -52,7 +52,7 @@ TEST(Request, EveryKindIsRead) {
   EXPECT_EQ(grab.grip.stiffness, 20.0);
   EXPECT_EQ(grab.grip.to, Vec3(0, 0, 1));
   EXPECT_EQ(read<Seek>(R"({"do": "seek", "frame": 12})").frame, 12);
-  EXPECT_EQ(read<Show>(R"({"do": "show", "solids": "von_mises", "rods": ""})").solids, "von_mises");
+  EXPECT_EQ(read<Show>(R"({"do": "show", "solids": "von_mises", "rods": "", "energies": false})").solids, "von_mises");
   EXPECT_EQ(read<Ack>(R"({"do": "ack", "frame": 7})").frame, 7);
 }
 
@@ -77,7 +77,7 @@ TEST(Request, WhatIsNoneIsToldWhy) {
               HasSubstr("stiffness"));
   EXPECT_THAT(refusal(R"({"do": "seek", "frame": 1.5})"), HasSubstr("whole number"));
   EXPECT_THAT(refusal(R"({"do": "speed", "value": 0})"), HasSubstr("from 0.001"));
-  EXPECT_THAT(refusal(R"({"do": "show", "solids": "beauty", "rods": ""})"), HasSubstr("not known"));
+  EXPECT_THAT(refusal(R"({"do": "show", "solids": "beauty", "rods": "", "energies": false})"), HasSubstr("not known"));
   EXPECT_THAT(refusal(std::string(kLongestRequest + 1, ' ')), HasSubstr("bytes"));
   EXPECT_THAT(refusal("{\"do\": " + std::string(1000, '[') + std::string(1000, ']') + "}"), HasSubstr("JSON"));
 }
@@ -87,7 +87,7 @@ TEST(Request, AnythingIsReadOrRefused) {
       R"({"do": "tell", "actuator": "pull_left", "value": 1.5})",
       R"({"do": "aim", "target": "tip", "at": [1, 2, 3e-1]})",
       R"({"do": "grip", "solid": "trunk", "node": 3, "to": [0, 0, 1], "stiffness": 20})",
-      R"({"do": "show", "solids": "von_mises", "rods": "bending"})",
+      R"({"do": "show", "solids": "von_mises", "rods": "bending", "energies": true})",
       R"({"do": "speed", "value": 0.5})",
   };
   std::mt19937 random(1);

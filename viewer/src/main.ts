@@ -14,7 +14,7 @@ import { View, type Hit, type Look } from "./view";
 const find = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const canvas = find<HTMLCanvasElement>("view");
 const view = new View(canvas);
-const plots = new Plots(find("plots"));
+const plots = new Plots(find("plots"), () => askToShow());
 const status = find("status");
 const trouble = find("trouble");
 const legend = find("legend");
@@ -36,7 +36,7 @@ const ask = (request: Request): void => source?.ask(request);
 
 function askToShow(): void {
   const { solids, rods } = view.look;
-  ask({ do: "show", solids: solids === "displacement" ? "" : solids, rods });
+  ask({ do: "show", solids: solids === "displacement" ? "" : solids, rods, energies: plots.energies() });
 }
 
 const panel = new Panel(find("panel"), {

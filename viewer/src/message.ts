@@ -117,5 +117,5 @@ export type Request =
   | { do: "aim"; target: string; at: number[] | null }
   | { do: "grip"; solid: string; node: number; to: number[]; stiffness: number }
   | { do: "seek"; frame: number }
-  | { do: "show"; solids: string; rods: string }
+  | { do: "show"; solids: string; rods: string; energies: boolean }
   | { do: "ack"; frame: number };

@@ -46,7 +46,15 @@ export class Plots {
   private shown: { group: number; plot: uPlot | null; place: HTMLElement }[] = [];
   private drawn = 0;
 
-  constructor(private readonly place: HTMLElement) {}
+  constructor(
+    private readonly place: HTMLElement,
+    private readonly chosen: () => void,
+  ) {}
+
+  /** Whether they are plotted: to tell them costs the simulation more than all the rest. */
+  energies(): boolean {
+    return this.shown.some((own) => this.groups[own.group]!.name === "Energies");
+  }
 
   build(scene: SceneMessage): void {
     this.scene = scene;
@@ -63,6 +71,7 @@ export class Plots {
         onchange: (event) => {
           own.group = Number((event.target as HTMLSelectElement).value);
           this.make(own);
+          this.chosen();
         },
       });
       this.groups.forEach((one, i) =>
@@ -112,7 +121,7 @@ export class Plots {
 
   private dataOf(group: Group): uPlot.AlignedData {
     const factor = shownUnit(group.unit)[1];
-    return [this.time, ...group.signals.map((i) => this.values[i]!.map((value) => factor * value))];
+    return [this.time, ...group.signals.map((i) => this.values[i]!.map((value) => (Number.isNaN(value) ? null : factor * value)))];
   }
 
   add(frame: FrameMessage): void {

@@ -63,7 +63,7 @@ std::string standalone_page(Replay& replay, int frames) {
   append(all, replay.scene());
   const long last = replay.frames() - 1, count = std::clamp<long>(frames, 1, replay.frames());
   Wishes wishes;
-  wishes.show = {"von_mises", "bending"};
+  wishes.show = {"von_mises", "bending", true};
   for (long i = 0; i < count; ++i)
     append(all, replay.frame(count == 1 ? last : (i * last + (count - 1) / 2) / (count - 1), wishes));
   const std::string& html = page();

@@ -132,7 +132,11 @@ Request read_request(std::string_view text, const Model& model) {
     return own;
   }
   if (what == "seek") return Seek{whole(entry(all, "frame"), "frame")};
-  if (what == "show") return Show{field_of(all, "solids", solid_fields()), field_of(all, "rods", rod_fields())};
+  if (what == "show") {
+    const Json& energies = entry(all, "energies");
+    if (!energies.is_boolean()) refuse("energies", "must be true or false");
+    return Show{field_of(all, "solids", solid_fields()), field_of(all, "rods", rod_fields()), energies.get<bool>()};
+  }
   if (what == "ack") return Ack{whole(entry(all, "frame"), "frame")};
   refuse("do", "is not known: play, pause, step, reset, speed, tell, aim, grip, release, seek, show, ack");
 }

@@ -44,9 +44,11 @@ struct Release {};
 struct Seek {
   long frame = 0;
 };
-/// {"do": "show", "solids": field, "rods": field}: what is to be told besides where things are; "" nothing.
+/// {"do": "show", "solids": field, "rods": field, "energies": yes or no}: what is to be told besides where things are;
+/// "" nothing.
 struct Show {
   std::string solids, rods;
+  bool energies = false;
 };
 /// {"do": "ack", "frame": n}: it has been drawn.
 struct Ack {

@@ -7,7 +7,6 @@
 #include "sinew/sim/internal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
-#include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"
 
 namespace sinew::live {
@@ -97,6 +96,7 @@ Scenery::Scenery(const Model& model) : model_(model) {
     skins_.push_back(std::move(skin));
   }
   for (const RodModel& rod : model.rods) abscissae_.push_back(samples_of(rod.rod));
+  signals_ = signal_groups(model);
   const std::vector<std::string> names = signal_names(model);
   for (const EffectorModel& own : model.effectors) {
     const std::string first = model.outputs[own.output].name + ".target";
@@ -294,7 +294,15 @@ std::string Scenery::frame(const State& state, const Show& show, const Goal& goa
     if (placed(own)) put(floats_, output_position(model, state, own));
   }
   add("outputs");
-  std::vector<double> signals = signal_values(model, state);
+  std::vector<double> signals;
+  for (const SignalGroup& group : signals_) {
+    if (group.columns.front().name.starts_with("energy.") && !show.energies) {
+      signals.insert(signals.end(), group.columns.size(), NAN);
+      continue;
+    }
+    const std::vector<double> values = group.values(model, state);
+    signals.insert(signals.end(), values.begin(), values.end());
+  }
   tell_goal(state, goal, signals);
   message_.add("signals", std::span<const double>(signals));
   std::vector<double> told;

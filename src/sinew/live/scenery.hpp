@@ -7,6 +7,7 @@
 
 #include "sinew/live/message.hpp"
 #include "sinew/live/request.hpp"
+#include "sinew/sim/signals.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/targets.hpp"
 
@@ -21,7 +22,8 @@ class Scenery {
   std::string scene(const nlohmann::ordered_json& more);
 
   /// Where everything is: of solids 16 bits per coordinate of how far surface nodes have moved since t = 0, to 1/32767
-  /// of the farthest; rods, bodies, contacts, points, outputs; signals. `more` joins its head.
+  /// of the farthest; rods, bodies, contacts, points, outputs; signals, those of energies
+  /// NaN unless they are shown: they cost more than all else. `more` joins its head.
   std::string frame(const State& state, const Show& show, const Goal& goal, const nlohmann::ordered_json& more);
 
  private:
@@ -39,6 +41,7 @@ class Scenery {
   std::vector<Skin> skins_;
   std::vector<std::vector<double>> abscissae_;  ///< [m] at which rods are shown
   std::vector<std::size_t> target_signals_;     ///< first of each effector's signals: its components, then how far off
+  std::vector<SignalGroup> signals_;
   Message message_;
   std::vector<float> floats_;
   std::vector<std::int16_t> shorts_;

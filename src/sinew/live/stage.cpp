@@ -14,9 +14,23 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr double kFrames = 60.0;    ///< at most so many a second
-constexpr double kHand = 0.4;       ///< [s] in which a motor is moved over its whole range
+constexpr double kHand = 1.0;       ///< [s] in which a motor is moved over its whole range
+constexpr double kQuick = 12.0;     ///< [1/s] of the spring by which a hand leads a target
 constexpr double kArm = 1.0;        ///< sizes of the scene a second that a target is moved by
 constexpr double kPatience = 0.25;  ///< [s] behind the wall's time after which that is given up
+
+/// The model with motors no quicker than a hand, and two linearisations a step where the scene has one: of twenty
+/// seconds of targets that are thrown about, a trunk of thin cables survives one or two with one, and all with two.
+Model paced(Model model) {
+  for (ActuatorModel& own : model.actuators) {
+    const Span span = slider_span(model, own);
+    double& rate = own.told_force() ? own.force_rate : own.speed;
+    rate = std::min(rate, (span.most - span.least) / kHand);
+  }
+  int& iterations = model.scene.newton.iterations;
+  if (iterations == 1) iterations = 2;
+  return model;
+}
 
 /// Moves a value towards another by at most so much.
 double towards(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
@@ -65,7 +79,7 @@ void take(const Request& request, Wishes& wishes) {
 // Simulation.
 
 Simulation::Simulation(const Model& model, int threads, OnFrame on_frame)
-    : model_(model), on_frame_(std::move(on_frame)), scenery_(model), workspace_(model, threads) {
+    : model_(paced(model)), on_frame_(std::move(on_frame)), scenery_(model_), workspace_(model_, threads) {
   if (model.scene.analysis == Analysis::statics || model.scene.analysis == Analysis::modal)
     throw InputError({.path = "analysis",
                       .rule = "cannot be watched live: a static or modal analysis does not go on in time",
@@ -101,8 +115,36 @@ void Simulation::begin() {
   state_ = initial_state(model_);
   command_ = command_of(model_, state_);
   goal_ = goal_at(model_, 0.0);
+  goal_speed_.setZero(goal_.at.size());
+  led_.assign(model_.effectors.size(), false);
   report_ = {};
   trouble_.clear();
+}
+
+/// Where the scene, or a hand, wants effectors: what is dragged goes there like a damped spring, so that motors are
+/// asked for nothing sudden, and back again when it is let go.
+Goal Simulation::led(Goal goal, const Wishes& wishes) {
+  const double h = model_.scene.time.step;
+  for (std::size_t i = 0; i < model_.effectors.size(); ++i) {
+    const EffectorModel& own = model_.effectors[i];
+    const auto wish = wishes.aimed.find(static_cast<int>(i));
+    if (wish != wishes.aimed.end()) led_[i] = true;
+    if (!led_[i]) continue;
+    auto at = goal.at.segment(own.first, own.size);
+    auto speed = goal_speed_.segment(own.first, own.size);
+    const Eigen::VectorXd to = wish == wishes.aimed.end() ? Eigen::VectorXd(at) : wish->second;
+    const Eigen::VectorXd from = goal_.at.segment(own.first, own.size);
+    const double metre = measure_of(model_, own).unit / 1e-3, most = kArm * model_.size * metre;
+    // Implicit in the speed: no step is too long.
+    speed = (speed + h * kQuick * kQuick * (to - from)) / (1.0 + 2.0 * h * kQuick + h * h * kQuick * kQuick);
+    if (speed.norm() > most) speed *= most / speed.norm();
+    at = from + h * speed;
+    if (wish == wishes.aimed.end() && (to - at).norm() < 1e-4 * metre) {
+      led_[i] = false;
+      speed.setZero();
+    }
+  }
+  return goal;
 }
 
 /// One step to the next point of the time grid, or none.
@@ -126,14 +168,7 @@ bool Simulation::advance_once(const Wishes& wishes) {
     if (std::holds_alternative<External>(model_.loads[i].factor)) told.loads[i] = now.loads[i];
   }
   if (wishes.grip) told.grips = {*wishes.grip};
-  Goal goal = goal_at(model_, time);
-  for (const auto& [number, at] : wishes.aimed) {
-    const EffectorModel& own = model_.effectors[static_cast<std::size_t>(number)];
-    const Eigen::VectorXd from = goal_.at.segment(own.first, own.size), way = at - from;
-    const double unit = measure_of(model_, own).unit / 1e-3;  // as much as a metre
-    const double most = kArm * model_.size * unit * h;
-    goal.at.segment(own.first, own.size) = way.norm() <= most ? at : Eigen::VectorXd(from + way * (most / way.norm()));
-  }
+  const Goal goal = led(goal_at(model_, time), wishes);
   const Told by{&told, model_.effectors.empty() ? nullptr : &goal, forward};
   const long before = state_.grid;
   do {

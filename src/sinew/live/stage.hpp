@@ -43,10 +43,11 @@ struct Wishes {
 void take(const Request& request, Wishes& wishes);
 
 /// Steps a model in the time of the wall, or as fast as it can, on a thread of its own. A step that cannot be made
-/// pauses it at the last state; the frame says why. What is told moves to where it is wished at the pace of a hand.
+/// pauses it at the last state; the frame says why. What is told, and what targets ask of motors, goes at
+/// the pace of a hand.
 class Simulation {
  public:
-  /// The model must outlive it. Dynamic and quasi-static scenes; throws InputError for others.
+  /// Dynamic and quasi-static scenes; throws InputError for others.
   Simulation(const Model& model, int threads, OnFrame on_frame);
   ~Simulation();
   Simulation(const Simulation&) = delete;
@@ -59,16 +60,19 @@ class Simulation {
   using Clock = std::chrono::steady_clock;
   void work();
   bool advance_once(const Wishes& wishes);
+  Goal led(Goal goal, const Wishes& wishes);
   void publish(const Wishes& wishes);
   void begin();
 
-  const Model& model_;
+  const Model model_;
   OnFrame on_frame_;
   Scenery scenery_;
   Workspace workspace_;
   State state_;
   Command command_;
   Goal goal_;
+  Eigen::VectorXd goal_speed_;
+  std::vector<bool> led_;  ///< effectors whose goal is, or was, a hand's
   StepReport report_;
   std::string trouble_;
   long frame_ = 0;
