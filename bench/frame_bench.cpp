@@ -1,4 +1,4 @@
-// What a frame of the page costs the simulation: made once for all pages, at most 60 times a second.
+// What a frame of the page costs the simulation: made once for all pages, at most 120 times a second.
 #include <benchmark/benchmark.h>
 
 #include <nlohmann/json.hpp>

@@ -116,6 +116,20 @@ TEST(Scenery, FramesAreWhereTheStateIs) {
   EXPECT_EQ(frame.head["time"], state.time);
 }
 
+TEST(Scenery, ASceneOfOneThingIsEnough) {
+  for (const char* const text : {"rods: {arm: {path: [[0, 0, 0], [1, 0, 0]], sections: 2, section: {circle: {radius: 5 "
+                                 "mm}}, material: {young: 1 "
+                                 "MPa, poisson: 0.4, density: 1100}}}\n",
+                                 "bodies: {ball: {sphere: {radius: 10 mm}, mass: 1 kg}}\n"}) {
+    const runs::LoadedScene loaded = runs::load(io::parse_scene(text, "one.yaml", "."));
+    const State state = initial_state(loaded.model);
+    Scenery scenery(loaded.model);
+    const Taken scene(scenery.scene({})), frame(scenery.frame(state, {}, {}, {}));
+    EXPECT_EQ(scene.head["signals"].size(), frame.numbers<double>("signals").size());
+    EXPECT_TRUE(std::isnan(frame.numbers<double>("signals").back()));
+  }
+}
+
 TEST(Scenery, SlidersGoWhereMotorsCan) {
   const runs::LoadedScene reach = scene_of("reach"), finger = scene_of("finger");
   const Span limited = slider_span(reach.model, reach.model.actuators[0]);

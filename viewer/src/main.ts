@@ -100,8 +100,8 @@ function tick(): void {
     showLegend();
     ask({ do: "ack", frame: latest.head.frame });
   }
-  const spent = performance.now() - begin;
   if (view.draw()) {
+    const spent = performance.now() - begin;
     tally.draws += 1;
     tally.scriptMs = tally.draws === 1 ? spent : 0.95 * tally.scriptMs + 0.05 * spent;
     tally.worstMs = Math.max(tally.worstMs, spent);

@@ -296,7 +296,8 @@ std::string Scenery::frame(const State& state, const Show& show, const Goal& goa
   add("outputs");
   std::vector<double> signals;
   for (const SignalGroup& group : signals_) {
-    if (group.columns.front().name.starts_with("energy.") && !show.energies) {
+    const bool energies = !group.columns.empty() && group.columns.front().name.starts_with("energy.");
+    if (energies && !show.energies) {
       signals.insert(signals.end(), group.columns.size(), NAN);
       continue;
     }

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kFrames = 60.0;    ///< at most so many a second
+constexpr double kFrames = 120.0;   ///< at most so many a second
 constexpr double kHand = 1.0;       ///< [s] in which a motor is moved over its whole range
 constexpr double kQuick = 12.0;     ///< [1/s] of the spring by which a hand leads a target
 constexpr double kArm = 1.0;        ///< sizes of the scene a second that a target is moved by
