@@ -46,6 +46,8 @@ async function painted(page: Page): Promise<number> {
   });
 }
 
+test.afterEach(() => Served.stopAll());
+
 const tipX = (page: Page): Promise<number> => page.evaluate(() => window.sinew.outputs()[0]!);
 
 test("the robot is seen, and moves", async ({ page }) => {

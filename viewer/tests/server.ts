@@ -19,6 +19,13 @@ export function folder(): string {
 }
 
 export class Served {
+  private static readonly all = new Set<Served>();
+
+  /** Ends what a test that failed has left. */
+  static async stopAll(): Promise<void> {
+    for (const own of Served.all) await own.stop();
+  }
+
   private constructor(
     readonly address: string,
     readonly process: ChildProcess,
@@ -38,7 +45,9 @@ export class Served {
       });
       own.on("exit", (code) => failed(new Error(`sinew view ended with ${code}: ${wrong}`)));
     });
-    return new Served(address, own);
+    const served = new Served(address, own);
+    Served.all.add(served);
+    return served;
   }
 
   get port(): string {
@@ -46,6 +55,7 @@ export class Served {
   }
 
   async stop(): Promise<void> {
+    Served.all.delete(this);
     const ended = new Promise((done) => this.process.on("exit", done));
     this.process.kill("SIGINT");
     await ended;
