@@ -130,6 +130,23 @@ TEST(Scenery, ASceneOfOneThingIsEnough) {
   }
 }
 
+TEST(Scenery, BodiesAreWhereTheyAreAndTurned) {
+  const runs::LoadedScene loaded = runs::load(io::parse_scene(
+      "bodies: {ball: {sphere: {radius: 10 mm}, mass: 1 kg, spin: [3 rad/s, 0, 1 rad/s]}}\n", "one.yaml", "."));
+  Workspace workspace(loaded.model);
+  State state = initial_state(loaded.model);
+  while (state.grid < 20) advance(loaded.model, workspace, state);
+  Scenery scenery(loaded.model);
+  const Taken frame(scenery.frame(state, {}, {}, {}));
+  const auto pose = frame.numbers<float>("bodies");
+  ASSERT_EQ(pose.size(), 7u);
+  const Vec3 p(pose[0], pose[1], pose[2]);
+  const Eigen::Quaterniond turn(pose[6], pose[3], pose[4], pose[5]);
+  EXPECT_GT(turn.vec().norm(), 0.1);
+  EXPECT_LT((p - state.bodies[0].p).norm(), 1e-6);
+  EXPECT_LT((turn.toRotationMatrix() - state.bodies[0].R).norm(), 1e-6);
+}
+
 TEST(Scenery, SlidersGoWhereMotorsCan) {
   const runs::LoadedScene reach = scene_of("reach"), finger = scene_of("finger");
   const Span limited = slider_span(reach.model, reach.model.actuators[0]);

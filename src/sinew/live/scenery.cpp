@@ -272,7 +272,8 @@ std::string Scenery::frame(const State& state, const Show& show, const Goal& goa
   floats_.clear();
   const auto add_pose = [&](const Placement& own) {
     put(floats_, own.p);
-    for (const double value : Eigen::Quaterniond(own.R).coeffs()) floats_.push_back(static_cast<float>(value));
+    const Eigen::Quaterniond turn(own.R);
+    for (const double value : turn.coeffs()) floats_.push_back(static_cast<float>(value));
   };
   for (const rigid::Motion& own : state.bodies) add_pose({own.R, own.p});
   for (const ObstacleModel& own : model.obstacles) add_pose(compose(moved(model, state, own.frame), own.pose));
