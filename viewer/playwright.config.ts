@@ -6,6 +6,10 @@ export default defineConfig({
   timeout: 120_000,
   workers: 1,
   reporter: [["list"]],
+  projects: [
+    { name: "tests", testIgnore: "figures.spec.ts" },
+    { name: "figures", testMatch: "figures.spec.ts" },
+  ],
   use: {
     viewport: { width: 1200, height: 760 },
     launchOptions: {
