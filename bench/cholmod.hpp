@@ -2,19 +2,30 @@
 #pragma once
 
 #include <cholmod.h>
+#include <dlfcn.h>
 #include <unistd.h>
 
 #include <Eigen/CholmodSupport>
+#include <cstdio>
 #include <cstdlib>
 
 #include "sinew/linalg/sparse_factor.hpp"
 
 namespace sinew {
 
+/// Ends the program unless CHOLMOD's dense work is done by OpenBLAS: with the reference BLAS, which suitesparse is
+/// content with, it takes half as long again, and ratios to it would flatter.
+inline void need_openblas() {
+  if (dlsym(RTLD_DEFAULT, "openblas_get_config")) return;
+  std::fputs("CHOLMOD runs on a BLAS that is not OpenBLAS here: scripts/install_dependencies bench\n", stderr);
+  std::exit(1);
+}
+
 /// Starts the program again with one thread everywhere: libraries read these when they are loaded. CHOLMOD asks OpenMP
 /// for four threads whatever OMP_NUM_THREADS says, and on fewer processors they wait for each other; only the limit
 /// binds it.
 inline void one_thread(char** argv) {
+  need_openblas();
   if (std::getenv("OMP_THREAD_LIMIT")) return;
   for (const char* name : {"OMP_THREAD_LIMIT", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"}) setenv(name, "1", 1);
   execv("/proc/self/exe", argv);
