@@ -48,8 +48,8 @@ void steps(benchmark::State& run, const std::string& name) {
 
 BENCHMARK_CAPTURE(steps, trunk, "reach")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(frames, trunk, "reach", {})->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(frames, trunk_stress, "reach", {"von_mises", "bending", false})->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(frames, trunk_energies, "reach", {"", "", true})->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(frames, trunk_stress, "reach", {{"von_mises"}, {"bending"}, false})->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(frames, trunk_energies, "reach", {{}, {}, true})->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(signals, trunk, "reach")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(steps, grasper, "grasper")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(frames, grasper, "grasper", {})->Unit(benchmark::kMicrosecond);

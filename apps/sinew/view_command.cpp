@@ -1,9 +1,13 @@
 #include <fmt/core.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netdb.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <utility>
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
@@ -33,6 +37,23 @@ sigset_t block_signals() {
   return signals;
 }
 
+/// Where a browser finds what is served on an address: of all interfaces the first that is not this machine's alone.
+std::string address_of(const std::string& served) {
+  if (served != "0.0.0.0" && served != "::") return served;
+  ifaddrs* all = nullptr;
+  std::string found = served == "::" ? "::1" : "127.0.0.1";
+  if (getifaddrs(&all) != 0) return found;
+  for (const ifaddrs* own = all; own; own = own->ifa_next) {
+    char text[NI_MAXHOST] = "";
+    if (!own->ifa_addr || own->ifa_addr->sa_family != AF_INET || (own->ifa_flags & IFF_LOOPBACK) != 0) continue;
+    if (getnameinfo(own->ifa_addr, sizeof(sockaddr_in), text, sizeof(text), nullptr, 0, NI_NUMERICHOST) != 0) continue;
+    found = text;
+    break;
+  }
+  freeifaddrs(all);
+  return found;
+}
+
 bool is_recording(const std::filesystem::path& given) {
   return std::filesystem::is_directory(given) || given.extension() == ".sinew";
 }
@@ -43,13 +64,17 @@ int serve(const ViewOptions& options, const Model& model, const Make& make) {
   const sigset_t signals = block_signals();
   std::unique_ptr<live::Server> server;
   std::mutex mutex;  // frames may come before there is a server
-  const auto stage = make([&](live::Bytes frame) {
+  const auto stage = make([&](live::Bytes frame, long number) {
     const std::lock_guard lock(mutex);
-    if (server) server->publish(std::move(frame));
+    if (server) server->publish(std::move(frame), number);
   });
   live::Behind behind;
   behind.page = live::page();
-  behind.scene = [&] { return stage->scene(); };
+  stage->take(live::Pause{});  // until somebody looks
+  behind.scene = [&, begun = false]() mutable {
+    if (!std::exchange(begun, true)) stage->take(live::Play{});
+    return stage->scene();
+  };
   behind.read = [&model](std::string_view text) { return live::read_request(text, model); };
   behind.take = [&](const live::Request& request) { stage->take(request); };
   behind.report = [](const std::string& text) { fmt::print(stderr, "{}\n", text); };
@@ -58,13 +83,15 @@ int serve(const ViewOptions& options, const Model& model, const Make& make) {
     const std::lock_guard lock(mutex);
     server = std::make_unique<live::Server>(place, std::move(behind));
   }
-  if (place.address != "127.0.0.1" && place.address != "::1")
+  if (!live::is_loopback(place.address))
     fmt::print(stderr,
                "warning: whoever reaches {} and knows the address below can see and move this robot; what is sent is "
                "not encrypted. Better leave --bind out and use: ssh -L {}:127.0.0.1:{} this-machine\n",
                place.address, server->port(), server->port());
-  const std::string host = place.address.find(':') == std::string::npos ? place.address : "[" + place.address + "]";
-  const std::string address = fmt::format("http://{}:{}/?token={}", host, server->port(), place.token);
+  const std::string host = address_of(place.address);
+  const std::string address =
+      fmt::format("http://{}:{}/?token={}", host.find(':') == std::string::npos ? host : "[" + host + "]",
+                  server->port(), place.token);
   fmt::print("Open {}\nCtrl-C ends it.\n", address);
   std::fflush(stdout);
   if (options.open && std::getenv("DISPLAY") &&
@@ -80,6 +107,11 @@ int serve(const ViewOptions& options, const Model& model, const Make& make) {
 
 int view(const ViewOptions& options) {
   if (is_recording(options.what)) {
+    if (!options.overrides.empty())
+      throw InputError({.path = "--set",
+                        .value = options.overrides.front(),
+                        .rule = "does not change a run that is recorded already",
+                        .remedy = "view the scene itself, or run it again with --set"});
     const std::filesystem::path path =
         std::filesystem::is_directory(options.what) ? runs::recording_path(options.what) : options.what;
     io::Recording recording = io::read_recording(path);

@@ -52,7 +52,8 @@ TEST(Request, EveryKindIsRead) {
   EXPECT_EQ(grab.grip.stiffness, 20.0);
   EXPECT_EQ(grab.grip.to, Vec3(0, 0, 1));
   EXPECT_EQ(read<Seek>(R"({"do": "seek", "frame": 12})").frame, 12);
-  EXPECT_EQ(read<Show>(R"({"do": "show", "solids": "von_mises", "rods": "", "energies": false})").solids, "von_mises");
+  EXPECT_EQ(read<Show>(R"({"do": "show", "solids": "von_mises", "rods": "", "energies": false})").solids,
+            std::vector<std::string>{"von_mises"});
   EXPECT_EQ(read<Ack>(R"({"do": "ack", "frame": 7})").frame, 7);
 }
 

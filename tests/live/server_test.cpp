@@ -33,7 +33,13 @@ class PageServer : public testing::Test {
     behind.page = "<!doctype html>the page";
     behind.scene = [] { return std::string("scene"); };
     behind.read = [this](std::string_view text) { return read_request(text, loaded_.model); };
-    behind.take = [this](const Request&) { ++taken_; };
+    behind.take = [this](const Request& request) {
+      ++taken_;
+      const std::lock_guard lock(mutex_);
+      if (const Show* show = std::get_if<Show>(&request)) shown_ = *show;
+      if (std::holds_alternative<Grab>(request)) held_ = true;
+      if (std::holds_alternative<Release>(request)) held_ = false;
+    };
     behind.report = [this](const std::string& text) {
       const std::lock_guard lock(mutex_);
       reports_.push_back(text);
@@ -82,6 +88,22 @@ class PageServer : public testing::Test {
     page.write(boost::asio::buffer(text));
   }
 
+  /// What is true within a minute.
+  template <class Holds>
+  void wait_until(const Holds& holds) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    for (;;) {
+      {
+        const std::lock_guard lock(mutex_);
+        if (holds()) return;
+      }
+      ASSERT_LT(std::chrono::steady_clock::now(), until);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+  void publish(int number) { server_->publish(std::make_shared<const std::string>(std::to_string(number)), number); }
+
   std::vector<std::string> reports() {
     const std::lock_guard lock(mutex_);
     return reports_;
@@ -92,6 +114,8 @@ class PageServer : public testing::Test {
   std::atomic<int> taken_ = 0;
   std::mutex mutex_;
   std::vector<std::string> reports_;
+  Show shown_;
+  bool held_ = false;
   std::unique_ptr<Server> server_;
   std::string host_;
 };
@@ -122,14 +146,48 @@ TEST_F(PageServer, RefusesWhoDoesNot) {
 TEST_F(PageServer, SendsTheSceneThenFramesAsTheyAreDrawn) {
   const auto page = come();
   EXPECT_EQ(next(*page), "scene");
-  server_->publish(std::make_shared<const std::string>("1"));
+  publish(1);
   EXPECT_EQ(next(*page), "1");
-  server_->publish(std::make_shared<const std::string>("2"));
+  publish(2);
   EXPECT_EQ(next(*page), "2");
   // Two have not been drawn: others wait, and only the last of them is kept.
-  for (int i = 3; i < 50; ++i) server_->publish(std::make_shared<const std::string>(std::to_string(i)));
-  say(*page, R"({"do": "ack", "frame": 2})");
+  for (int i = 3; i < 50; ++i) publish(i);
+  say(*page, R"({"do": "ack", "frame": 1})");
   EXPECT_EQ(next(*page), "49");
+  // Two are on their way again, 2 and 49; one of yesterday makes no room.
+  publish(50);
+  say(*page, R"({"do": "ack", "frame": 1})");
+  say(*page, R"({"do": "dance"})");
+  EXPECT_THAT(next(*page), HasSubstr("refused"));
+  say(*page, R"({"do": "ack", "frame": 49})");
+  EXPECT_EQ(next(*page), "50");
+}
+
+TEST_F(PageServer, ShowsWhatAnyPageShows) {
+  auto one = come();
+  next(*one);
+  say(*one, R"({"do": "show", "solids": "von_mises", "rods": "", "energies": false})");
+  const auto other = come();
+  next(*other);
+  say(*other, R"({"do": "show", "solids": "volume_ratio", "rods": "bending", "energies": true})");
+  wait_until([&] { return shown_.solids.size() == 2 && shown_.rods.size() == 1 && shown_.energies; });
+  one.reset();
+  wait_until([&] { return shown_.solids == std::vector<std::string>{"volume_ratio"}; });
+}
+
+TEST_F(PageServer, WhoLeavesHoldsNothing) {
+  const std::string grip = R"({"do": "grip", "solid": "finger", "node": 3, "to": [0, 0, 0.1], "stiffness": 20})";
+  auto one = come();
+  next(*one);
+  say(*one, grip);
+  wait_until([&] { return held_; });
+  auto other = come();
+  next(*other);
+  other.reset();
+  EXPECT_EQ(next(*come()), "scene");  // by now it is known that it left
+  EXPECT_TRUE(held_);
+  one.reset();
+  wait_until([&] { return !held_; });
 }
 
 TEST_F(PageServer, AnswersWhatItDoesNotTakeAndGoesOn) {
@@ -216,6 +274,27 @@ TEST_F(PageServer, HasRoomForSoManyAndNoMore) {
   }
 }
 
+TEST(Place, OfAllInterfacesIsReachedByNumbersAlone) {
+  Behind behind;
+  behind.page = "the page";
+  const Server server({"0.0.0.0", 0, kToken}, behind);
+  const auto status = [&](const std::string& host) {
+    boost::asio::io_context context;
+    tcp::socket own(context);
+    own.connect({boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(server.port())});
+    http::request<http::empty_body> request(http::verb::get, "/?token=" + kToken, 11);
+    request.set(http::field::host, host + ":" + std::to_string(server.port()));
+    http::write(own, request);
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(own, buffer, response);
+    return response.result_int();
+  };
+  EXPECT_EQ(status("192.0.2.7"), 200u);
+  EXPECT_EQ(status("[2001:db8::7]"), 200u);
+  EXPECT_EQ(status("robot.example"), 403u);
+}
+
 TEST(Place, ThatCannotBeListenedOnIsTold) {
   const auto refusal = [](const Place& place) -> std::string {
     try {
@@ -225,7 +304,7 @@ TEST(Place, ThatCannotBeListenedOnIsTold) {
     }
     return "";
   };
-  EXPECT_THAT(refusal({"nowhere", 0, kToken}), HasSubstr("numeric"));
+  EXPECT_THAT(refusal({"localhost", 0, kToken}), HasSubstr("is no numeric address"));
   EXPECT_THAT(refusal({"203.0.113.1", 0, kToken}), HasSubstr("cannot be listened on"));
   EXPECT_EQ(random_token().size(), 32u);
   EXPECT_NE(random_token(), random_token());

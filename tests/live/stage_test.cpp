@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -71,7 +73,7 @@ class Audience {
     }
   }
   OnFrame listener() {
-    return [this](Bytes frame) { take(std::move(frame)); };
+    return [this](Bytes frame, long) { take(std::move(frame)); };
   }
 
  private:
@@ -89,7 +91,7 @@ TEST(Scenery, FramesAreWhereTheStateIs) {
   while (state.grid < 20) advance(model, workspace, state);
   Scenery scenery(model);
   const Taken scene(scenery.scene({}));
-  const Taken frame(scenery.frame(state, {"von_mises", "bending", true}, {}, {{"frame", 1}}));
+  const Taken frame(scenery.frame(state, {{"von_mises", "volume_ratio"}, {"bending"}, true}, {}, {{"frame", 1}}));
   const auto rest = scene.numbers<float>("solid0.rest");
   const auto nodes = scene.numbers<std::uint32_t>("solid0.nodes");
   const auto moved = frame.numbers<std::int16_t>("solid0");
@@ -111,8 +113,12 @@ TEST(Scenery, FramesAreWhereTheStateIs) {
   EXPECT_EQ(scene.head["signals"].size(), signals.size());
   const auto rod = frame.numbers<float>("rod0");
   EXPECT_EQ(rod.size(), 3 * scene.head["rods"][0]["samples"].get<std::size_t>());
-  EXPECT_EQ(frame.numbers<float>("rod0.field").size(), rod.size() / 3);
-  EXPECT_EQ(frame.numbers<float>("solid0.field").size(), nodes.size());
+  EXPECT_EQ(frame.numbers<float>("rod0.bending").size(), rod.size() / 3);
+  const auto stress = frame.numbers<float>("solid0.von_mises"), volume = frame.numbers<float>("solid0.volume_ratio");
+  EXPECT_EQ(stress.size(), nodes.size());
+  ASSERT_EQ(volume.size(), nodes.size());
+  EXPECT_GT(*std::max_element(stress.begin(), stress.end()), 100.0f);  // [Pa]
+  for (const float own : volume) EXPECT_NEAR(own, 1.0, 0.3);
   EXPECT_EQ(frame.head["time"], state.time);
 }
 
@@ -164,7 +170,7 @@ TEST(Simulation, StepsAsARunDoesUntilSomebodyTellsItOtherwise) {
   Audience audience;
   Simulation simulation(loaded.model, 1, audience.listener());
   simulation.take(Speed{1000.0});
-  simulation.take(Show{"", "", true});
+  simulation.take(Show{{}, {}, true});
   simulation.take(Reset{});
   const Taken later = audience.wait_for([](const Taken& own) { return own.head["time"].get<double>() > 0.3; });
   while (state.time < later.head["time"].get<double>() - 1e-9) advance(loaded.model, workspace, state);
@@ -177,15 +183,18 @@ TEST(Simulation, ASliderMovesTheMotorAtThePaceOfAHand) {
   Simulation simulation(loaded.model, 1, audience.listener());
   simulation.take(Speed{100.0});
   simulation.take(Tell{0, 8e-3});
-  double before = 0.0;
+  const double pace = slider_span(loaded.model, loaded.model.actuators[0]).most;  // a second for all of it
   const Taken there = audience.wait_for([&](const Taken& own) {
     const double told = own.numbers<double>("told")[0];
+    EXPECT_LE(told, pace * own.head["time"].get<double>() + 1e-9);
     EXPECT_LE(told, 8e-3 + 1e-9);
-    before = told;
     return std::abs(told - 8e-3) < 1e-9;
   });
   EXPECT_EQ(there.head["mine"]["pull"], 8e-3);
-  EXPECT_GT(there.head["time"].get<double>(), 0.2);
+  simulation.take(Tell{0, 1e12});  // no further than its slider
+  audience.wait_for([&](const Taken& own) { return std::abs(own.numbers<double>("told")[0] - pace) < 1e-9; });
+  for (int i = 0; i < 20; ++i)
+    audience.wait_for([&](const Taken& own) { return own.numbers<double>("told")[0] <= pace + 1e-9; });
   simulation.take(Tell{0, {}});
   audience.wait_for([](const Taken& own) { return own.head["mine"].empty(); });
 }
@@ -203,10 +212,17 @@ TEST(Simulation, TargetsFollowTheHandAndMotorsCanBeTold) {
   EXPECT_NEAR(there.numbers<double>("goals")[0], 0.02, 1e-4);
   const Json columns = Taken(simulation.scene()).head["signals"];
   const auto signals = there.numbers<double>("signals");
+  int found = 0;
   for (std::size_t i = 0; i < signals.size(); ++i) {
-    if (columns[i]["name"] == "tip.target.x") EXPECT_NEAR(signals[i], 0.02, 1e-4);
-    if (columns[i]["name"] == "tip.error") EXPECT_LT(signals[i], 2e-4);
+    if (columns[i]["name"] == "tip.target.x") {
+      ++found;
+      EXPECT_NEAR(signals[i], 0.02, 1e-4);
+    } else if (columns[i]["name"] == "tip.error") {
+      ++found;
+      EXPECT_LT(signals[i], 2e-4);
+    }
   }
+  EXPECT_EQ(found, 2);
   EXPECT_THAT(there.head["targets"].get<std::string>(), testing::StartsWith("reached"));
   simulation.take(Tell{2, 0.7});
   const Taken told =
@@ -238,6 +254,34 @@ TEST(Simulation, AHandPullsAtABody) {
   audience.wait_for([&](const Taken& own) { return drawn(own) < 0.004; });
 }
 
+TEST(Simulation, ATrunkSurvivesHandsThatPullAtItAndLetGo) {
+  const runs::LoadedScene loaded = scene_of("reach");
+  const Model& model = loaded.model;
+  for (const Vec3& way : {Vec3(0.15, 0, 0), Vec3(-0.1, 0.1, 0), Vec3(0, -0.15, 0.05)}) {
+    Audience audience;
+    Simulation simulation(model, 2, audience.listener());
+    int node = 0;  // at the middle of its length, outside
+    const Eigen::Matrix3Xd& rest = model.solids[0].body.rest;
+    for (int i = 0; i < rest.cols(); ++i) {
+      const auto off = [&](int k) { return std::abs(rest(2, k) - 0.1) - rest.col(k).head<2>().dot(way.head<2>()); };
+      if (off(i) < off(node)) node = i;
+    }
+    simulation.take(Speed{1000.0});
+    const auto go_on_for = [&](double seconds) {
+      double begin = -1.0;
+      const Taken last = audience.wait_for([&](const Taken& own) {
+        if (begin < 0.0) begin = own.head["time"];
+        return own.head["trouble"] != "" || own.head["time"].get<double>() > begin + seconds;
+      });
+      EXPECT_EQ(last.head["trouble"], "") << "pulled by " << way.transpose();
+    };
+    simulation.take(Grab{{0, node, 2500.0 * model.size * model.size, rest.col(node) + way}});
+    go_on_for(2.0);
+    simulation.take(Release{});
+    go_on_for(3.0);
+  }
+}
+
 TEST(Simulation, AStepThatCannotBeMadePausesAndSaysWhy) {
   const runs::LoadedScene loaded = scene_of("finger", {"newton={limit: 1, tolerance: 1e-12}"});
   Audience audience;
@@ -262,9 +306,32 @@ TEST(Simulation, PausedItMakesOneStepAtATime) {
   EXPECT_NEAR(next.head["time"].get<double>() - before, loaded.model.scene.time.step, 1e-12);
 }
 
+TEST(Simulation, PausesAtOnceHoweverSlowItIs) {
+  const runs::LoadedScene loaded = scene_of("finger");
+  Audience audience;
+  Simulation simulation(loaded.model, 1, audience.listener());
+  simulation.take(Speed{0.001});  // ten seconds a step
+  audience.wait_for([](const Taken& own) { return own.head["speed"] == 0.001; });
+  const auto begin = std::chrono::steady_clock::now();
+  simulation.take(Pause{});
+  audience.wait_for([](const Taken& own) { return !own.head["playing"].get<bool>(); });
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
+TEST(Simulation, RequestsAreNoFramesOfTheirOwn) {
+  const runs::LoadedScene loaded = scene_of("finger");
+  std::atomic<int> frames = 0;
+  Simulation simulation(loaded.model, 1, [&](const Bytes&, long) { ++frames; });
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(500))
+    simulation.take(Grab{{0, 0, 1.0, Vec3::Zero()}});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_LE(frames, 120 * seconds + 2);
+}
+
 TEST(Simulation, WhatDoesNotGoOnInTimeIsRefused) {
   const runs::LoadedScene loaded = scene_of("finger", {"analysis=static"});
-  EXPECT_THROW(Simulation(loaded.model, 1, [](const Bytes&) {}), InputError);
+  EXPECT_THROW(Simulation(loaded.model, 1, [](const Bytes&, long) {}), InputError);
 }
 
 io::Recording recording_of(const runs::LoadedScene& loaded) {
@@ -281,16 +348,33 @@ TEST(Replay, PlaysSeeksAndStartsAgain) {
   const runs::LoadedScene loaded = scene_of("finger", {"time.duration=0.2 s"});
   Audience audience;
   Replay replay(loaded.model, recording_of(loaded), audience.listener());
-  EXPECT_EQ(Taken(replay.scene()).head["times"].size(), 21u);
+  const Taken scene(replay.scene());
+  EXPECT_EQ(scene.head["times"].size(), 21u);
+  EXPECT_EQ(scene.numbers<double>("history.times").size(), 21u);
+  EXPECT_EQ(scene.numbers<double>("history.values").size(), 21u * signal_names(loaded.model).size());
   replay.take(Seek{7});
   replay.take(Pause{});
   const Taken seventh = audience.wait_for([](const Taken& own) { return own.head["frame"] == 7; });
   EXPECT_NEAR(seventh.head["time"].get<double>(), 0.07, 1e-12);
   replay.take(Seek{1000000});
   audience.wait_for([](const Taken& own) { return own.head["frame"] == 20; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));  // no part of what is played
   replay.take(Play{});
-  audience.wait_for([](const Taken& own) { return own.head["frame"] == 0; });
+  const Taken first = audience.wait_for([](const Taken& own) { return own.head["playing"].get<bool>(); });
+  EXPECT_EQ(first.head["frame"], 0);
   audience.wait_for([](const Taken& own) { return own.head["frame"] == 20 && !own.head["playing"].get<bool>(); });
+}
+
+TEST(Replay, StepsOfAnotherModelAreTold) {
+  const runs::LoadedScene loaded = scene_of("finger", {"time.duration=0.05 s"});
+  io::Recording recording = recording_of(loaded);
+  recording.steps[2].state.pop_back();
+  Audience audience;
+  Replay replay(loaded.model, std::move(recording), audience.listener());
+  replay.take(Seek{2});
+  const Taken broken = audience.wait_for([](const Taken& own) { return own.head["frame"] == 2; });
+  EXPECT_THAT(broken.head["trouble"].get<std::string>(), testing::HasSubstr("does not belong"));
+  audience.wait_for([](const Taken& own) { return own.head["frame"] == 5 && own.head["trouble"] == ""; });
 }
 
 TEST(Replay, AsAFileItIsAllThere) {

@@ -9,7 +9,7 @@ const maps = {
 export type MapName = keyof typeof maps;
 export const mapNames = Object.keys(maps) as MapName[];
 
-/** 256 colours, red, green and blue from 0 to 1, one after the other. */
+/** 256 colours, red, green and blue from 0 to 1, one after the other: as light, which three.js counts in, not as maps tell them, for the eye. */
 export function table(name: MapName): Float32Array {
   const stops = maps[name].map((own) => [0, 2, 4].map((at) => parseInt(own.slice(at, at + 2), 16) / 255));
   const all = new Float32Array(3 * 256);
@@ -17,7 +17,7 @@ export function table(name: MapName): Float32Array {
     const at = (i / 255) * (stops.length - 1);
     const before = Math.min(Math.floor(at), stops.length - 2);
     for (let k = 0; k < 3; ++k) {
-      all[3 * i + k] = stops[before]![k]! + (at - before) * (stops[before + 1]![k]! - stops[before]![k]!);
+      all[3 * i + k] = Math.pow(stops[before]![k]! + (at - before) * (stops[before + 1]![k]! - stops[before]![k]!), 2.2);
     }
   }
   return all;
@@ -31,6 +31,12 @@ export function gradient(name: MapName): string {
 /** Six colours of Okabe and Ito, for things side by side. */
 export const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
+/** A field's name as people say it. */
+export function spoken(name: string): string {
+  const own: Record<string, string> = { von_mises: "von Mises stress", principal_stress: "largest principal stress" };
+  return own[name] ?? name.replaceAll("_", " ");
+}
+
 /** A number with its unit, as people write it: 0.0123 m is 12.3 mm. */
 export function quantity(value: number, unit: string): string {
   const shown: Record<string, [string, number]> = { m: ["mm", 1e3], rad: ["deg", 180 / Math.PI], "1": ["", 1] };
@@ -41,7 +47,7 @@ export function quantity(value: number, unit: string): string {
     else if (size >= 1e3) [name, factor] = ["kPa", 1e-3];
   }
   const own = value * factor;
-  const text = own === 0 ? "0" : Math.abs(own) < 1e-3 || Math.abs(own) >= 1e5 ? own.toExponential(2) : own.toPrecision(4);
+  const text = Math.abs(value) < 1e-10 ? "0" : Math.abs(own) < 1e-3 || Math.abs(own) >= 1e5 ? own.toExponential(2) : own.toPrecision(4);
   return name ? `${text} ${name}` : text;
 }
 

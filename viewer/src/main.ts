@@ -3,9 +3,9 @@
 import "uplot/dist/uPlot.min.css";
 import * as THREE from "three";
 
-import { gradient, quantity } from "./colors";
+import { gradient, quantity, spoken } from "./colors";
 import { download, make } from "./dom";
-import type { Any, FrameMessage, Request, SceneMessage } from "./message";
+import type { Any, FrameMessage, Quantity, Request, SceneMessage } from "./message";
 import { Panel } from "./panel";
 import { Plots } from "./plots";
 import { connect, embedded, type Source } from "./source";
@@ -13,12 +13,22 @@ import { View, type Hit, type Look } from "./view";
 
 const find = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const canvas = find<HTMLCanvasElement>("view");
-const view = new View(canvas);
+const view = looking();
 const plots = new Plots(find("plots"), () => askToShow());
 const status = find("status");
 const trouble = find("trouble");
 const legend = find("legend");
 const help = find<HTMLDialogElement>("help");
+
+/** The view, or why there is none. */
+function looking(): View {
+  try {
+    return new View(canvas);
+  } catch (error) {
+    find("status").textContent = "This browser does not draw in three dimensions (WebGL), which the page needs. Try another one, or switch it on.";
+    throw error;
+  }
+}
 
 let source: Source | null = null;
 let scene: SceneMessage | null = null;
@@ -27,9 +37,8 @@ let fresh = false;
 let stiffness = 100;
 let film: MediaRecorder | null = null;
 let refusal = "";
-let linked = false;
+let over: { x: number; y: number } | null = null; // where the pointer is, if nobody has looked what is there
 
-/** What tests and the curious look at: window.sinew. */
 /** What came and was drawn; means over about 20 pictures, in ms: of our own script, and of drawing them (three.js and what it calls). */
 const tally = { frames: 0, draws: 0, scriptMs: 0, drawMs: 0, worstMs: 0 };
 
@@ -38,6 +47,13 @@ const ask = (request: Request): void => source?.ask(request);
 function askToShow(): void {
   const { solids, rods } = view.look;
   ask({ do: "show", solids: solids === "displacement" ? "" : solids, rods, energies: plots.energies() });
+}
+
+function togglePlots(): void {
+  const place = find("plots");
+  place.hidden = !place.hidden;
+  view.leave(place.offsetWidth);
+  plots.draw();
 }
 
 const panel = new Panel(find("panel"), {
@@ -57,16 +73,14 @@ const panel = new Panel(find("panel"), {
       return false;
     }
     const parts: Blob[] = [];
-    film = new MediaRecorder(canvas.captureStream(60), { mimeType: "video/webm" });
+    const type = ["video/webm", "video/mp4"].find((own) => MediaRecorder.isTypeSupported(own))!;
+    film = new MediaRecorder(canvas.captureStream(60), { mimeType: type });
     film.ondataavailable = (event) => parts.push(event.data);
-    film.onstop = () => download("sinew.webm", new Blob(parts, { type: "video/webm" }));
+    film.onstop = () => download(type === "video/webm" ? "sinew.webm" : "sinew.mp4", new Blob(parts, { type }));
     film.start();
     return true;
   },
-  plots() {
-    find("plots").hidden = !find("plots").hidden;
-    plots.draw();
-  },
+  plots: togglePlots,
   help: () => help.showModal(),
   stiffness: (value) => (stiffness = value),
 });
@@ -77,6 +91,7 @@ function take(own: Any): void {
   if (own.kind === "scene") {
     scene = own.message;
     latest = null;
+    held = null;
     view.build(scene);
     panel.build(scene, view.look);
     plots.build(scene);
@@ -91,15 +106,19 @@ function take(own: Any): void {
 function tick(): void {
   requestAnimationFrame(tick);
   const begin = performance.now();
+  if (over && !held) {
+    if (scene?.head.mode === "live") canvas.classList.toggle("over", view.pick(over.x, over.y) !== null);
+    over = null;
+  }
   if (fresh && latest && scene) {
     fresh = false;
+    ask({ do: "ack", frame: latest.head.frame }); // first: whatever becomes of this one, others are to come
     view.show(latest);
-    if (held?.hit.kind === "solid") showHand();
+    showHand();
     panel.show(latest);
     plots.add(latest);
     showStatus();
     showLegend();
-    ask({ do: "ack", frame: latest.head.frame });
   }
   const ready = performance.now();
   if (view.draw()) {
@@ -120,41 +139,51 @@ function showStatus(): void {
   parts.push([`${head.newton} Newton`, "newton"]);
   if (head.contacts) parts.push([`${head.contacts} contacts`, "contacts"]);
   parts.push([head.status, "state"]);
+  if (head.halvings) parts.push([`step halved ${head.halvings}×`, "warning"]);
   if (head.targets) parts.push([head.targets, head.targets.startsWith("reached") ? "fine" : "warning"]);
-  if (!linked) parts.push(["connection lost; trying again", "warning"]);
+  if (scene!.head.targets.length > 0 && Object.keys(head.mine ?? {}).length > 0) {
+    parts.push(["targets are left alone while motors are told", "warning"]);
+  }
   if (refusal) parts.push([refusal, "warning"]);
   status.replaceChildren(...parts.map(([text, name]) => make("span", { class: name, text })));
-  trouble.hidden = !head.trouble;
-  trouble.textContent = head.trouble ? `Stopped: ${head.trouble}` : "";
+  const stopped = head.trouble ? `Stopped: ${head.trouble} Reset begins again.` : "";
+  trouble.hidden = !stopped;
+  if (trouble.textContent !== stopped) trouble.textContent = stopped;
 }
 
 function showLegend(): void {
   if (!scene) return;
-  const { solids, rods, map } = view.look;
-  const name = scene.head.solids.length > 0 && solids ? solids : rods;
-  legend.hidden = !name;
-  if (!name) return;
-  const unit =
-    name === "displacement" ? "m" : [...scene.head.solid_fields, ...scene.head.rod_fields].find((own) => own.name === name)!.unit;
-  legend.replaceChildren(
-    make("span", { text: name.replaceAll("_", " ") }),
-    make("i", { style: `background: ${gradient(map)}` }),
-    make("span", { text: `${quantity(view.range.least, unit)} … ${quantity(view.range.most, unit)}` }),
-  );
+  const { head } = scene;
+  const { look, ranges } = view;
+  const rows: Node[] = [];
+  const add = (kind: "solids" | "rods", fields: Quantity[]): void => {
+    const name = look[kind];
+    const range = ranges[kind];
+    if (!name || !range) return;
+    const unit = name === "displacement" ? "m" : fields.find((own) => own.name === name)!.unit;
+    rows.push(
+      make("span", { text: (head.solids.length > 0 && head.rods.length > 0 ? `${kind}: ` : "") + spoken(name) }),
+      make("i", { style: `background: ${gradient(look.map)}` }),
+      make("span", { text: `${quantity(range.least, unit)} … ${quantity(range.most, unit)}` }),
+    );
+  };
+  add("solids", head.solid_fields);
+  add("rods", head.rod_fields);
+  legend.hidden = rows.length === 0;
+  legend.replaceChildren(...rows);
 }
 
 const listener = {
   message: take,
   refused(why: string) {
     refusal = why;
+    if (latest) showStatus();
     setTimeout(() => (refusal = ""), 4000);
   },
-  connected(yes: boolean) {
-    linked = yes;
+  connected(yes: boolean, why = "") {
     document.body.classList.toggle("lost", !yes);
-    if (!yes) {
-      status.replaceChildren(make("span", { class: "warning", text: "No connection; trying again. Does `sinew view` still run?" }));
-    }
+    if (!yes) release();
+    if (!yes) status.replaceChildren(make("span", { class: "warning", text: why }));
   },
 };
 
@@ -167,8 +196,11 @@ function place(event: PointerEvent): { x: number; y: number } {
   return { x: event.clientX - box.left, y: event.clientY - box.top };
 }
 
+/** From what is held to the hand; targets follow it only as time goes on. */
 function showHand(): void {
-  if (held?.hit.kind === "solid") view.showHand([view.cornerPosition(held.hit.number, held.hit.node), held.to]);
+  if (!held) return;
+  const { kind, number, node } = held.hit;
+  view.showHand([kind === "solid" ? view.cornerPosition(number, node) : view.goalPosition(number), held.to]);
 }
 
 function pull(): void {
@@ -177,6 +209,7 @@ function pull(): void {
   if (held.hit.kind === "target") {
     const targets = scene.head.targets.filter((own) => own.position);
     ask({ do: "aim", target: targets[held.hit.number]!.name, at: to });
+    showHand();
   } else {
     const solid = scene.head.solids[held.hit.number]!.name;
     ask({ do: "grip", solid, node: view.meshNode(held.hit.number, held.hit.node), to, stiffness });
@@ -201,7 +234,7 @@ canvas.addEventListener(
 canvas.addEventListener("pointermove", (event) => {
   const { x, y } = place(event);
   if (!held) {
-    if (event.buttons === 0 && scene?.head.mode === "live") canvas.classList.toggle("over", view.pick(x, y) !== null);
+    over = event.buttons === 0 ? { x, y } : null;
     return;
   }
   held.to = view.under(x, y, held.to);
@@ -229,6 +262,7 @@ help.append(
       ["Drag beside it, or with Alt", "turns the view; right button or two fingers shift it, the wheel comes nearer"],
       ["Sliders", "tell a motor what to do; the button beside gives it back"],
       ["Space, ., R", "play or pause, one step, reset"],
+      ["Section", "cuts solids open; Picture and Video save what is seen, Plots has the numbers"],
       ["1 2 3 4", "views from the corner, front, side, top"],
       ["P, G, H", "picture, plots, this help"],
     ].flatMap(([term, text]) => [make("dt", { text: term! }), make("dd", { text: text! })]),
@@ -237,17 +271,17 @@ help.append(
 );
 
 addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || (event.target as HTMLElement).matches("input, select, button, dialog *")) return;
+  const at = event.target as HTMLElement;
+  if (event.ctrlKey || event.metaKey || event.altKey || at.matches("select, dialog *")) return;
+  if ((event.key === " " || event.key === "Enter") && at.matches("input, button, summary")) return; // theirs
   const presets = { "1": "corner", "2": "front", "3": "side", "4": "top" } as const;
   if (event.key in presets) view.preset(presets[event.key as keyof typeof presets]);
   else if (event.key === " ") panel.toggle();
   else if (event.key === ".") ask({ do: "step" });
   else if (event.key === "r" || event.key === "R") ask({ do: "reset" });
   else if (event.key === "p" || event.key === "P") canvas.toBlob((blob) => blob && download("sinew.png", blob));
-  else if (event.key === "g" || event.key === "G") {
-    find("plots").hidden = !find("plots").hidden;
-    plots.draw();
-  } else if (event.key === "h" || event.key === "H" || event.key === "?") help.showModal();
+  else if (event.key === "g" || event.key === "G") togglePlots();
+  else if (event.key === "h" || event.key === "H" || event.key === "?") help.showModal();
   else return;
   event.preventDefault();
 });

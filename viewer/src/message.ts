@@ -18,6 +18,7 @@ export interface Target {
   size: number;
   unit: string;
   position: boolean;
+  weights: number[]; // 0: the component is free
 }
 
 export interface Quantity {
@@ -28,13 +29,13 @@ export interface Quantity {
 export interface SceneHead {
   mode: "live" | "replay";
   title: string;
-  step: number;
+  warnings: string[];
   size: number;
   middle: Vector;
   up: Vector;
   times?: number[];
-  solids: { name: string; nodes: number; cells: number }[];
-  rods: { name: string; samples: number; cable?: boolean }[];
+  solids: { name: string }[];
+  rods: { name: string; samples: number }[];
   bodies: { name: string; fixed: boolean; ground: boolean; round: boolean }[];
   actuators: Actuator[];
   targets: Target[];
@@ -52,6 +53,7 @@ export interface FrameHead {
   targets: string;
   newton: number;
   scales: number[];
+  halvings?: number;
   playing?: boolean;
   speed?: number;
   contacts?: number;

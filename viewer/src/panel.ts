@@ -1,6 +1,6 @@
 // Buttons, sliders and choices.
 
-import { mapNames, quantity, shownUnit, type MapName } from "./colors";
+import { mapNames, quantity, shownUnit, spoken, type MapName } from "./colors";
 import { make } from "./dom";
 import type { FrameMessage, Request, SceneMessage } from "./message";
 import type { Look } from "./view";
@@ -21,10 +21,12 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 export class Panel {
   private play = make("button");
   private timeline = make("input", { type: "range" });
+  private speed = make("select");
   private motors: { slider: HTMLInputElement; said: HTMLElement; auto: HTMLButtonElement; held: boolean }[] = [];
   private goals: HTMLElement[] = [];
   private scene: SceneMessage | null = null;
   private playing = true;
+  private hand = 0.5; // where its slider stands
 
   constructor(
     private readonly place: HTMLElement,
@@ -36,19 +38,19 @@ export class Panel {
     const { hands } = this;
     document.title = scene.head.title ? `${scene.head.title} – Sinew` : "Sinew";
     this.play = make("button", { class: "play", onclick: () => this.toggle() });
-    const speed = make("select", {
+    this.speed = make("select", {
       "aria-label": "Speed",
       title: "Speed, of real time",
       onchange: (event) => hands.ask({ do: "speed", value: Number((event.target as HTMLSelectElement).value) }),
     });
-    SPEEDS.forEach((own) => speed.append(make("option", { value: own, selected: own === 1, text: `${own}×` })));
+    SPEEDS.forEach((own) => this.speed.append(make("option", { value: own, selected: own === 1, text: `${own}×` })));
     const transport = make(
       "div",
       { class: "row" },
       this.play,
       make("button", { text: "Step", title: "One step (.)", onclick: () => hands.ask({ do: "step" }) }),
       make("button", { text: "Reset", title: "Back to the start (R)", onclick: () => hands.ask({ do: "reset" }) }),
-      speed,
+      this.speed,
     );
     const children: Node[] = [make("h1", { text: scene.head.title || "Sinew" }), transport];
     if (scene.head.mode === "replay") {
@@ -67,6 +69,7 @@ export class Panel {
       });
       children.push(this.timeline);
     }
+    scene.head.warnings.forEach((text) => children.push(make("p", { class: "warning", text })));
     this.motors = [];
     if (scene.head.mode === "live" && scene.head.actuators.length > 0) children.push(this.motorsOf(scene));
     this.goals = [];
@@ -81,6 +84,7 @@ export class Panel {
       title: "Record what is seen",
       onclick: () => (film.textContent = hands.video() ? "Stop" : "Video"),
     });
+    film.hidden = typeof MediaRecorder === "undefined";
     children.push(
       make(
         "div",
@@ -160,19 +164,20 @@ export class Panel {
     const { hands } = this;
     const choice = (name: string, values: string[], chosen: string, take: (value: string) => void): HTMLElement => {
       const own = make("select", { "aria-label": name, onchange: (event) => take((event.target as HTMLSelectElement).value) });
-      values.forEach((value) => own.append(make("option", { value, selected: value === chosen, text: value.replaceAll("_", " ") || "plain" })));
+      values.forEach((value) => own.append(make("option", { value, selected: value === chosen, text: spoken(value) || "plain" })));
       return make("label", {}, make("span", { text: name }), own);
     };
-    const range = (name: string, value: number, most: number, take: (value: number) => void): HTMLElement =>
-      make(
-        "label",
-        {},
-        make("span", { text: name }),
-        make("input", {
-          type: "range", min: 0, max: most, step: most / 100, value, "aria-label": name,
-          oninput: (event) => take(Number((event.target as HTMLInputElement).value)),
-        }),
-      );
+    const range = (name: string, value: number, take: (value: number) => void, said?: (value: number) => string): HTMLElement => {
+      const text = make("small", { text: said?.(value) ?? "" });
+      const slider = make("input", {
+        type: "range", min: 0, max: 1, step: 0.01, value, "aria-label": name,
+        oninput: () => {
+          take(Number(slider.value));
+          text.textContent = said?.(Number(slider.value)) ?? "";
+        },
+      });
+      return make("label", {}, make("span", { text: name }), slider, ...(said ? [text] : []));
+    };
     const box = (name: string, checked: boolean, take: (value: boolean) => void): HTMLElement =>
       make(
         "label",
@@ -180,7 +185,7 @@ export class Panel {
         make("input", { type: "checkbox", checked, onchange: (event) => take((event.target as HTMLInputElement).checked) }),
         name,
       );
-    const axes = ["x", "y", "z"];
+    const sides = ["from x", "from y", "from z", "from −x", "from −y", "from −z"];
     const rows: Node[] = [make("summary", { text: "Look" })];
     if (scene.head.solids.length > 0) {
       const fields = ["", "displacement", ...scene.head.solid_fields.map((own) => own.name)];
@@ -192,15 +197,23 @@ export class Panel {
     }
     rows.push(choice("Colours", mapNames, look.map, (value) => hands.look({ map: value as MapName })));
     if (scene.head.solids.length > 0) {
-      rows.push(range("Opacity", look.opacity, 1, (value) => hands.look({ opacity: value })));
-      rows.push(range("Section", look.section, 1, (value) => hands.look({ section: value })));
-      rows.push(choice("Section along", axes, axes[look.sectionAxis]!, (value) => hands.look({ sectionAxis: axes.indexOf(value) as 0 | 1 | 2 })));
+      rows.push(range("Opacity", look.opacity, (value) => hands.look({ opacity: value })));
+      rows.push(range("Section", look.section, (value) => hands.look({ section: value })));
+      const taken = (value: string): void => {
+        const number = sides.indexOf(value);
+        hands.look({ sectionAxis: (number % 3) as 0 | 1 | 2, sectionSide: number < 3 ? 1 : -1 });
+      };
+      rows.push(choice("cut", sides, sides[look.sectionAxis + (look.sectionSide > 0 ? 0 : 3)]!, taken));
     }
     if (scene.head.mode === "live" && scene.head.solids.length > 0) {
-      const usual = 2500 * scene.head.size ** 2;
-      const stiffness = range("Hand", 0.5, 1, (value) => hands.stiffness(usual * 10 ** (4 * value - 2)));
+      const spring = (value: number): number => Math.min(2500 * scene.head.size ** 2 * 10 ** (4 * value - 2), 1e6);
+      const take = (value: number): void => {
+        this.hand = value;
+        hands.stiffness(spring(value));
+      };
+      const stiffness = range("Hand", this.hand, take, (value) => quantity(spring(value), "N/m"));
       stiffness.title = "How stiff the spring is by which the mouse pulls at the body";
-      hands.stiffness(usual);
+      take(this.hand);
       rows.push(stiffness);
     }
     rows.push(
@@ -229,6 +242,7 @@ export class Panel {
   show(frame: FrameMessage): void {
     const scene = this.scene!;
     if (frame.head.playing !== undefined) this.setPlaying(frame.head.playing);
+    if (SPEEDS.includes(frame.head.speed ?? 0) && document.activeElement !== this.speed) this.speed.value = String(frame.head.speed);
     if (scene.head.mode === "replay" && document.activeElement !== this.timeline) this.timeline.value = String(frame.head.frame);
     const told = frame.doubles("told");
     this.motors.forEach((own, i) => {
@@ -243,7 +257,7 @@ export class Panel {
       const target = scene.head.targets[i]!;
       const at = Array.from(goals.subarray(target.first, target.first + target.size));
       const [unit, factor] = shownUnit(target.unit);
-      own.textContent = `${at.map((value) => (value * factor).toFixed(1)).join(", ")} ${unit}`;
+      own.textContent = `${at.map((value, k) => (target.weights[k] === 0 ? "free" : (value * factor).toFixed(1))).join(", ")} ${unit}`;
     });
   }
 }

@@ -42,6 +42,7 @@ export class Plots {
   private groups: Group[] = [];
   private scene: SceneMessage | null = null;
   private time: number[] = [];
+  private complete = false; // all of a run is there
   private values: number[][] = [];
   private shown: { group: number; plot: uPlot | null; place: HTMLElement }[] = [];
   private drawn = 0;
@@ -57,9 +58,18 @@ export class Plots {
   }
 
   build(scene: SceneMessage): void {
+    this.shown.forEach((own) => own.plot?.destroy());
     this.scene = scene;
     this.groups = groupsOf(scene);
     this.clear();
+    const times = scene.doubles("history.times");
+    this.complete = times.length > 0;
+    if (this.complete) {
+      const count = scene.head.signals.length;
+      const values = scene.doubles("history.values");
+      this.time = Array.from(times);
+      this.values = scene.head.signals.map((_, i) => this.time.map((_, k) => values[k * count + i]!));
+    }
     this.place.replaceChildren();
     const first = this.groups.findIndex((own) => own.name.startsWith("How far"));
     const choices = [0, first > 0 ? first : Math.min(1, this.groups.length - 1)];
@@ -82,7 +92,7 @@ export class Plots {
       this.make(own);
       return own;
     });
-    this.place.append(make("button", { text: "Save as CSV", title: "What is plotted, in SI", onclick: () => this.save() }));
+    this.place.append(make("button", { text: "Save as CSV", title: "What is plotted, in SI, as often as it was seen (signals.csv of a run has every step)", onclick: () => this.save() }));
   }
 
   clear(): void {
@@ -125,12 +135,14 @@ export class Plots {
   }
 
   add(frame: FrameMessage): void {
+    if (this.complete) return;
+    const { time } = frame.head;
     const last = this.time[this.time.length - 1];
-    if (last !== undefined && frame.head.time < last) this.clear();
-    if (last !== undefined && frame.head.time === last && this.time.length > 0) return;
-    this.time.push(frame.head.time);
+    if (last !== undefined && time < last) this.clear(); // it began again
+    const known = time === last ? 1 : 0;
     const signals = frame.doubles("signals");
-    this.values.forEach((own, i) => own.push(signals[i]!));
+    this.time.splice(this.time.length - known, known, time);
+    this.values.forEach((own, i) => own.splice(own.length - known, known, signals[i]!));
     if (this.time.length > LONGEST) {
       this.time.splice(0, LONGEST / 10);
       this.values.forEach((own) => own.splice(0, LONGEST / 10));
@@ -153,9 +165,9 @@ export class Plots {
   /** What is plotted, in SI. */
   csv(): string {
     const signals = [...new Set(this.shown.flatMap((own) => this.groups[own.group]!.signals))];
-    const names = signals.map((i) => this.scene!.head.signals[i]!.name);
+    const names = signals.map((i) => this.scene!.head.signals[i]!).map(({ name, unit }) => `${name} [${unit}]`);
     const rows = this.time.map((time, k) => [time, ...signals.map((i) => this.values[i]![k]!)].join(","));
-    return [["time", ...names].join(","), ...rows].join("\n") + "\n";
+    return [["time [s]", ...names].join(","), ...rows].join("\n") + "\n";
   }
 
   private save(): void {

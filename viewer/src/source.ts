@@ -10,8 +10,8 @@ export interface Source {
 export interface Listener {
   message(own: Any): void;
   refused(why: string): void;
-  /** Whether somebody is at the other end. */
-  connected(yes: boolean): void;
+  /** Whether somebody is at the other end; if not, why, for people. */
+  connected(yes: boolean, why?: string): void;
 }
 
 /** A connection that is made again when it breaks. */
@@ -31,14 +31,26 @@ export function connect(listener: Listener): Source {
       if (typeof event.data === "string") listener.refused(String(JSON.parse(event.data).refused));
       else listener.message(decode(new Uint8Array(event.data)));
     };
-    own.onclose = () => {
+    own.onclose = async (event) => {
+      const came = socket !== null;
       socket = null;
-      listener.connected(false);
+      let why = "No connection; trying again. Does `sinew view` still run?";
+      if (event.code === 1013) why = "Too many pages look on already; trying again.";
+      else if (!came && (await foreign())) why = "Another `sinew view` runs there now: open the address that it printed.";
+      listener.connected(false, why);
       setTimeout(open, 700);
     };
   };
   open();
   return { ask: (request) => socket?.send(JSON.stringify(request)) };
+}
+
+/** Whether somebody is there who does not know this page's token. */
+async function foreign(): Promise<boolean> {
+  return fetch(location.href).then(
+    (answer) => answer.status === 403,
+    () => false,
+  );
 }
 
 async function inflate(text: string): Promise<Uint8Array<ArrayBuffer>> {

@@ -16,6 +16,7 @@ export interface Look {
   contacts: boolean;
   section: number; // 0: none, to 1
   sectionAxis: 0 | 1 | 2;
+  sectionSide: 1 | -1; // what lies beyond it along the axis is cut away, or what lies before
 }
 
 export interface Range {
@@ -100,7 +101,7 @@ function label(text: string): THREE.Sprite {
 export class View {
   readonly renderer: THREE.WebGLRenderer;
   readonly camera: THREE.PerspectiveCamera;
-  readonly controls: OrbitControls;
+  controls: OrbitControls;
   look: Look = {
     solids: "displacement",
     rods: "",
@@ -111,8 +112,10 @@ export class View {
     contacts: true,
     section: 0,
     sectionAxis: 1,
+    sectionSide: 1,
   };
-  range: Range = { least: 0, most: 1 };
+  /** Of what is coloured; null: nothing is. */
+  ranges: { solids: Range | null; rods: Range | null } = { solids: null, rods: null };
   private readonly world = new THREE.Scene();
   private own = new THREE.Group();
   private scene: SceneMessage | null = null;
@@ -125,19 +128,20 @@ export class View {
   private letters: THREE.Sprite[] = [];
   private marks = new THREE.Points();
   private arrows = new THREE.LineSegments();
+  private touches = new THREE.Points();
   private hand = new THREE.Line();
   private box = new THREE.Box3();
   private size = 1;
   private colors = table("viridis");
   private moved = true;
+  private besides = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.localClippingEnabled = true;
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.001, 100);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("change", () => (this.moved = true));
+    this.controls = this.orbit();
     this.world.add(this.camera, this.own);
     const sun = new THREE.DirectionalLight("#ffffff", 1.6);
     sun.position.set(0.4, 0.8, 1);
@@ -153,15 +157,28 @@ export class View {
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
+  /** It turns about the way that is up for the camera when it is made. */
+  private orbit(): OrbitControls {
+    const own = new OrbitControls(this.camera, this.canvas);
+    own.addEventListener("change", () => (this.moved = true));
+    return own;
+  }
+
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    // The middle of what the panel leaves free.
-    const aside = width > 700 ? 130 : 0;
+    // The middle of what the panel and the plots leave free.
+    const aside = width > 700 ? 130 - this.besides / 2 : 0;
     this.camera.setViewOffset(width, height, -aside, 0, width, height);
     this.moved = true;
+  }
+
+  /** How much at the right is taken [px]. */
+  leave(width: number): void {
+    this.besides = width;
+    this.resize();
   }
 
   /** Whether anything has changed since the last time it was drawn. */
@@ -178,10 +195,6 @@ export class View {
     return true;
   }
 
-  refresh(): void {
-    this.moved = true;
-  }
-
   // What there is.
 
   build(scene: SceneMessage): void {
@@ -189,7 +202,10 @@ export class View {
     this.scene = scene;
     this.frame = null;
     this.own.traverse((one) => {
-      if (one instanceof THREE.Mesh || one instanceof THREE.LineSegments || one instanceof THREE.Points) {
+      if (one instanceof THREE.Sprite) {
+        one.material.map?.dispose();
+        one.material.dispose();
+      } else if (one instanceof THREE.Mesh || one instanceof THREE.Line || one instanceof THREE.Points) {
         one.geometry.dispose();
         (Array.isArray(one.material) ? one.material : [one.material]).forEach((material) => material.dispose());
       }
@@ -199,10 +215,12 @@ export class View {
     this.world.add(this.own);
     this.size = scene.head.size;
     this.box.makeEmpty();
+    if (scene.head.solids.length === 0) this.look.solids = "";
+    if (scene.head.rods.length === 0) this.look.rods = "";
     this.solids = scene.head.solids.map((_, i) => this.addSolid(i));
     this.rods = scene.head.rods.map((one, i) => this.addRod(i, one.samples));
     this.bodies = scene.head.bodies.map((_, i) => this.addBody(i));
-    this.targets = scene.head.targets.filter((one) => one.position).map((one) => this.addTarget(one.name));
+    this.targets = scene.head.targets.filter((one) => one.position).map(() => this.addTarget());
     this.outputs = scene.head.outputs.map((name) => {
       const own = label(name);
       this.own.add(own);
@@ -216,8 +234,12 @@ export class View {
       new THREE.BufferGeometry(),
       new THREE.LineBasicMaterial({ color: "#d62728", depthTest: false, linewidth: 2 }),
     );
+    this.touches = new THREE.Points(
+      new THREE.BufferGeometry(),
+      new THREE.PointsMaterial({ color: "#d62728", size: 5, sizeAttenuation: false, depthTest: false }),
+    );
     this.hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: "#d62728" }));
-    for (const one of [this.marks, this.arrows, this.hand]) {
+    for (const one of [this.marks, this.arrows, this.touches, this.hand]) {
       one.frustumCulled = false;
       one.renderOrder = 10;
       this.own.add(one);
@@ -225,7 +247,12 @@ export class View {
     this.hand.visible = false;
     this.axes();
     if (this.box.isEmpty()) this.box.expandByPoint(new THREE.Vector3(...scene.head.middle)).expandByScalar(this.size / 2);
-    if (!same) this.preset("corner");
+    this.camera.up.set(...scene.head.up);
+    if (!same) {
+      this.controls.dispose();
+      this.controls = this.orbit();
+      this.preset("corner");
+    }
     this.apply();
   }
 
@@ -339,7 +366,7 @@ export class View {
     return group;
   }
 
-  private addTarget(name: string): THREE.Group {
+  private addTarget(): THREE.Group {
     const group = new THREE.Group();
     const ball = new THREE.Mesh(
       new THREE.SphereGeometry(0.5, 24, 16),
@@ -353,7 +380,6 @@ export class View {
     line.frustumCulled = false;
     line.renderOrder = 14;
     group.add(ball, line);
-    group.userData.name = name;
     this.own.add(group);
     return group;
   }
@@ -379,7 +405,7 @@ export class View {
     const outputs = frame.floats("outputs");
     this.outputs.forEach((one, i) => one.position.set(outputs[3 * i]!, outputs[3 * i + 1]!, outputs[3 * i + 2]!));
     this.placeTargets();
-    this.marks.geometry.setAttribute("position", new THREE.BufferAttribute(frame.floats("points"), 3));
+    put(this.marks.geometry, frame.floats("points"));
     this.placeArrows(frame.floats("contacts"));
     this.paint();
     this.moved = true;
@@ -402,21 +428,29 @@ export class View {
     }
   }
 
-  /** Forces as lines, the largest a fifth of the scene long. */
+  /** Where forces act, and arrows along them, the largest a fifth of the scene long. */
   private placeArrows(contacts: Float32Array): void {
     let most = 0;
     for (let i = 0; i < contacts.length; i += 6) {
       most = Math.max(most, Math.hypot(contacts[i + 3]!, contacts[i + 4]!, contacts[i + 5]!));
     }
     const scale = most > 0 ? (0.2 * this.size) / most : 0;
-    const lines = new Float32Array(contacts.length);
+    const points = new Float32Array(contacts.length / 2);
+    const lines = new Float32Array(3 * contacts.length); // a shaft and two barbs
+    const from = new THREE.Vector3();
+    const along = new THREE.Vector3();
+    const aside = new THREE.Vector3();
     for (let i = 0; i < contacts.length; i += 6) {
-      for (let k = 0; k < 3; ++k) {
-        lines[i + k] = contacts[i + k]!;
-        lines[i + 3 + k] = contacts[i + k]! + scale * contacts[i + 3 + k]!;
-      }
+      from.fromArray(contacts, i).toArray(points, i / 2);
+      along.fromArray(contacts, i + 3).multiplyScalar(scale);
+      aside.set(along.z, along.x, along.y).cross(along);
+      if (aside.lengthSq() > 0) aside.setLength(0.07 * along.length());
+      const end = from.clone().add(along);
+      const back = from.clone().addScaledVector(along, 0.85);
+      [from, end, end, back.clone().add(aside), end, back.clone().sub(aside)].forEach((one, k) => one.toArray(lines, 3 * i + 3 * k));
     }
-    this.arrows.geometry.setAttribute("position", new THREE.BufferAttribute(lines, 3));
+    put(this.touches.geometry, points);
+    put(this.arrows.geometry, lines);
   }
 
   /** A tube around the points; its rings do not turn about it. */
@@ -469,10 +503,11 @@ export class View {
     this.colors = table(look.map);
     const planes: THREE.Plane[] = [];
     if (look.section > 0) {
-      const normal = new THREE.Vector3().setComponent(look.sectionAxis, -1);
+      const normal = new THREE.Vector3().setComponent(look.sectionAxis, -look.sectionSide);
       const least = this.box.min.getComponent(look.sectionAxis);
       const most = this.box.max.getComponent(look.sectionAxis);
-      planes.push(new THREE.Plane(normal, most - look.section * (most - least)));
+      const depth = look.section * (most - least);
+      planes.push(new THREE.Plane(normal, look.sectionSide > 0 ? most - depth : -(least + depth)));
     }
     for (const one of this.solids) {
       const { material } = one.mesh;
@@ -485,7 +520,7 @@ export class View {
       material.needsUpdate = true;
     }
     this.marks.visible = look.points;
-    this.arrows.visible = look.contacts;
+    this.arrows.visible = this.touches.visible = look.contacts;
     if (this.frame) this.paint();
     this.moved = true;
   }
@@ -493,31 +528,18 @@ export class View {
   private paint(): void {
     const { look } = this;
     const values = this.solids.map((one, i) => this.valuesOf(one, i));
-    const rods = this.rods.map((_, i) => this.frame!.floats(`rod${i}.field`));
-    const some = look.solids ? values : rods;
-    let least = Infinity;
-    let most = -Infinity;
-    for (const own of some) {
-      for (const value of own) {
-        if (value < least) least = value;
-        if (value > most) most = value;
-      }
-    }
-    if (look.solids === "displacement") least = 0;
-    if (!(most > least)) most = least + 1e-12;
-    if (Number.isFinite(least)) this.range = { least, most };
-    this.solids.forEach((one, i) => {
-      this.fill(one.color, values[i]!, 1, look.solids !== "" ? this.range : null, [0.42, 0.6, 0.75]);
-    });
+    const rods = this.rods.map((_, i) => this.frame!.floats(`rod${i}.${look.rods}`));
+    this.ranges = { solids: look.solids ? rangeOf(values) : null, rods: look.rods ? rangeOf(rods) : null };
+    if (this.ranges.solids && look.solids === "displacement") this.ranges.solids.least = 0;
+    this.solids.forEach((one, i) => this.fill(one.color, values[i]!, 1, this.ranges.solids, [0.42, 0.6, 0.75]));
     this.rods.forEach((one, i) => {
       const plain = new THREE.Color(palette[(i + 1) % palette.length]);
-      const own = look.rods && rods[i]!.length > 0 ? (look.solids ? rangeOf(rods) : this.range) : null;
-      this.fill(one.color, rods[i]!, RING, own, [plain.r, plain.g, plain.b]);
+      this.fill(one.color, rods[i]!, RING, this.ranges.rods, [plain.r, plain.g, plain.b]);
     });
   }
 
   private valuesOf(one: Solid, number: number): Float32Array {
-    if (this.look.solids !== "displacement") return this.frame!.floats(`solid${number}.field`);
+    if (this.look.solids !== "displacement") return this.frame!.floats(`solid${number}.${this.look.solids}`);
     const shorts = this.frame!.shorts(`solid${number}`);
     const scale = this.frame!.head.scales[number]!;
     const all = new Float32Array(one.rest.length / 3);
@@ -535,10 +557,9 @@ export class View {
         array.set(plain, 3 * i);
         continue;
       }
-      const part = Math.min(Math.max((value - range.least) / (range.most - range.least), 0), 1);
+      const part = range.most > range.least ? Math.min(Math.max((value - range.least) / (range.most - range.least), 0), 1) : 0;
       const at = 3 * Math.round(255 * (Number.isNaN(part) ? 0 : part));
-      // Colours of maps are for the eye; three.js counts in light.
-      for (let k = 0; k < 3; ++k) array[3 * i + k] = Math.pow(this.colors[at + k]!, 2.2);
+      for (let k = 0; k < 3; ++k) array[3 * i + k] = this.colors[at + k]!;
     }
     color.needsUpdate = true;
   }
@@ -591,11 +612,6 @@ export class View {
     return { x: ((own.x + 1) / 2) * this.canvas.clientWidth, y: ((1 - own.y) / 2) * this.canvas.clientHeight };
   }
 
-  targetPosition(name: string): THREE.Vector3 | null {
-    const own = this.targets.find((one) => one.userData.name === name);
-    return own ? own.children[0]!.position.clone() : null;
-  }
-
   private ray(x: number, y: number): THREE.Raycaster {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     const ray = new THREE.Raycaster();
@@ -603,18 +619,22 @@ export class View {
     return ray;
   }
 
-  /** What is under the pointer: a target within 16 px, else a solid. */
+  /** What is under the pointer and not cut away: a target within 16 px, else a solid that nothing hides. */
   pick(x: number, y: number): Hit | null {
     for (const [number, one] of this.targets.entries()) {
       const point = one.children[0]!.position.clone();
       const at = this.project(point);
-      if (Math.hypot(at.x - x, at.y - y) < 16) return { kind: "target", number, node: -1, point };
+      const before = point.clone().sub(this.camera.position).dot(this.camera.getWorldDirection(new THREE.Vector3())) > 0;
+      if (before && Math.hypot(at.x - x, at.y - y) < 16) return { kind: "target", number, node: -1, point };
     }
     const ray = this.ray(x, y);
+    const hidden = this.bodies.filter((_, i) => !this.scene!.head.bodies[i]!.ground).map((one) => ray.intersectObject(one)[0]?.distance ?? Infinity);
+    ray.far = Math.min(Infinity, ...hidden);
     let best: { distance: number; hit: Hit } | null = null;
     this.solids.forEach((one, number) => {
       one.mesh.geometry.computeBoundingSphere();
-      const found = ray.intersectObject(one.mesh, false)[0];
+      const planes = one.mesh.material.clippingPlanes ?? [];
+      const found = ray.intersectObject(one.mesh, false).find((hit) => planes.every((plane) => plane.distanceToPoint(hit.point) >= 0));
       if (!found || !found.face || (best && found.distance >= best.distance)) return;
       const corners = [found.face.a, found.face.b, found.face.c];
       const at = new THREE.Vector3();
@@ -637,6 +657,11 @@ export class View {
     return this.ray(x, y).ray.intersectPlane(plane, new THREE.Vector3()) ?? through.clone();
   }
 
+  /** Where the red ball of a target is. */
+  goalPosition(target: number): THREE.Vector3 {
+    return this.targets[target]!.children[0]!.position;
+  }
+
   meshNode(solid: number, corner: number): number {
     return this.solids[solid]!.nodes[corner]!;
   }
@@ -653,14 +678,28 @@ export class View {
   }
 }
 
-function rangeOf(all: Float32Array[]): Range {
+/** Null: there are no values. */
+function rangeOf(all: Float32Array[]): Range | null {
   let least = Infinity;
   let most = -Infinity;
   for (const own of all) {
     for (const value of own) {
-      least = Math.min(least, value);
-      most = Math.max(most, value);
+      if (value < least) least = value;
+      if (value > most) most = value;
     }
   }
-  return most > least ? { least, most } : { least, most: least + 1e-12 };
+  return most >= least ? { least, most } : null;
+}
+
+/** Points or lines of a number that changes; there is room for twice as many as were needed. */
+function put(geometry: THREE.BufferGeometry, numbers: Float32Array): void {
+  let own = geometry.getAttribute("position") as THREE.BufferAttribute | undefined;
+  if (!own || own.array.length < numbers.length) {
+    geometry.dispose(); // with the buffer of before
+    own = floats(Math.max((2 * numbers.length) / 3, 16));
+    geometry.setAttribute("position", own);
+  }
+  (own.array as Float32Array).set(numbers);
+  own.needsUpdate = true;
+  geometry.setDrawRange(0, numbers.length / 3);
 }

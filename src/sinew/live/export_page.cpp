@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "sinew/error/input_error.hpp"
 #include "sinew/live/page.hpp"
 
 namespace sinew::live {
@@ -50,7 +51,14 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
+/// Browsers hold so much of a run, compressed into one text and unpacked again.
+constexpr std::size_t kMost = 1U << 30;
+
 void append(std::string& all, const std::string& message) {
+  if (all.size() + message.size() > kMost)
+    throw InputError({.path = "--frames",
+                      .rule = "the run is too large for a page: its frames have more than 1 GiB",
+                      .remedy = "ask for fewer of them, as in --frames 100"});
   const auto size = static_cast<std::uint32_t>(message.size());
   all.append(reinterpret_cast<const char*>(&size), 4);
   all += message;
@@ -63,7 +71,7 @@ std::string standalone_page(Replay& replay, int frames) {
   append(all, replay.scene());
   const long last = replay.frames() - 1, count = std::clamp<long>(frames, 1, replay.frames());
   Wishes wishes;
-  wishes.show = {"von_mises", "bending", true};
+  wishes.show = everything();
   for (long i = 0; i < count; ++i)
     append(all, replay.frame(count == 1 ? last : (i * last + (count - 1) / 2) / (count - 1), wishes));
   const std::string& html = page();

@@ -33,7 +33,9 @@ std::string Message::bytes(nlohmann::ordered_json head) const {
   all.reserve(8 + text.size() + data_.size());
   all.append(reinterpret_cast<const char*>(&kind), 4);
   all.append(reinterpret_cast<const char*>(&size), 4);
-  return all + text + data_;
+  all += text;
+  all += data_;
+  return all;
 }
 
 }  // namespace sinew::live

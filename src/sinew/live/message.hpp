@@ -4,9 +4,8 @@
 //
 //   u32 kind      1: scene, 2: frame
 //   u32 size      of the JSON text, padded with spaces to a multiple of 8 less 8, so that arrays begin on such one
-//   text          its key "arrays" lists {name, type, at, count}: type is f32, f64, i16 or u32, `at` counts bytes from
-//   the
-//                 end of the text
+//   text          its key "arrays" lists {name, type, at, count}: type is f32, f64, i16 or u32, `at` counts bytes
+//                 from the end of the text
 //   arrays        each padded to a multiple of 8 bytes
 #pragma once
 

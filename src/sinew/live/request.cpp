@@ -74,11 +74,12 @@ long whole(const Json& value, const char* name) {
   return static_cast<long>(own);
 }
 
-std::string field_of(const Json& all, const char* kind, const std::vector<Field>& known) {
+std::vector<std::string> field_of(const Json& all, const char* kind, const std::vector<Field>& known) {
   const std::string name = word(all, kind);
+  if (name.empty()) return {};
   const auto same = [&name](const Field& own) { return own.name == name; };
-  if (!name.empty() && std::none_of(known.begin(), known.end(), same)) refuse(kind, "is not known");
-  return name;
+  if (std::none_of(known.begin(), known.end(), same)) refuse(kind, "is not known");
+  return {name};
 }
 
 constexpr auto kName = [](const auto& own) { return own.name; };
@@ -94,6 +95,25 @@ const std::vector<Field>& rod_fields() {
   static const std::vector<Field> fields = {
       {"bending", "1/m"}, {"torsion", "1/m"}, {"elongation", "1"}, {"von_mises", "Pa"}};
   return fields;
+}
+
+Show together(Show one, const Show& other) {
+  const auto join = [](std::vector<std::string>& own, const std::vector<std::string>& more) {
+    for (const std::string& name : more) {
+      if (std::find(own.begin(), own.end(), name) == own.end()) own.push_back(name);
+    }
+  };
+  join(one.solids, other.solids);
+  join(one.rods, other.rods);
+  one.energies = one.energies || other.energies;
+  return one;
+}
+
+Show everything() {
+  Show all{{}, {}, true};
+  for (const Field& own : solid_fields()) all.solids.emplace_back(own.name);
+  for (const Field& own : rod_fields()) all.rods.emplace_back(own.name);
+  return all;
 }
 
 Request read_request(std::string_view text, const Model& model) {

@@ -45,9 +45,9 @@ struct Seek {
   long frame = 0;
 };
 /// {"do": "show", "solids": field, "rods": field, "energies": yes or no}: what is to be told besides where things are;
-/// "" nothing.
+/// "" nothing. Of several pages, together, all that any of them asks for.
 struct Show {
-  std::string solids, rods;
+  std::vector<std::string> solids, rods;
   bool energies = false;
 };
 /// {"do": "ack", "frame": n}: it has been drawn.
@@ -62,6 +62,11 @@ struct Field {
 };
 const std::vector<Field>& solid_fields();
 const std::vector<Field>& rod_fields();
+
+/// What either asks for.
+Show together(Show one, const Show& other);
+/// All there is.
+Show everything();
 
 /// Throws InputError where it is none, names what is not there, or holds numbers that are not finite or out of range.
 Request read_request(std::string_view text, const Model& model);

@@ -105,12 +105,14 @@ Scenery::Scenery(const Model& model) : model_(model) {
   }
 }
 
-std::string Scenery::scene(const Json& more) {
+std::string Scenery::scene(const Json& more, const History& history) {
   const Model& model = model_;
   message_.begin(Kind::scene);
+  message_.add("history.times", std::span<const double>(history.times));
+  message_.add("history.values", std::span<const double>(history.values));
   Json head = more;
   head["title"] = model.scene.title;
-  head["step"] = model.scene.time.step;
+  head["warnings"] = model.warnings;
   head["size"] = model.size;
   head["middle"] = numbers(model.middle);
   head["up"] =
@@ -133,7 +135,7 @@ std::string Scenery::scene(const Json& more) {
     add(name + ".rest", rest);
     message_.add(name + ".nodes", std::span<const std::uint32_t>(nodes));
     message_.add(name + ".triangles", std::span<const std::uint32_t>(skins_[i].triangles));
-    solids.push_back({{"name", solid.name}, {"nodes", solid.body.nodes()}, {"cells", solid.body.elements()}});
+    solids.push_back({{"name", solid.name}});
   }
   Json& rods = head["rods"] = Json::array();
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
@@ -146,7 +148,7 @@ std::string Scenery::scene(const Json& more) {
     rods.push_back({{"name", model.rods[i].name}, {"samples", abscissae_[i].size()}});
   }
   for (const GeometricCableModel& cable : model.cables)
-    rods.push_back({{"name", cable.name}, {"samples", cable.cable.points + 1}, {"cable", true}});
+    rods.push_back({{"name", cable.name}, {"samples", cable.cable.points + 1}});
   Json& bodies = head["bodies"] = Json::array();
   const auto add_body = [&](const std::string& name, const contact::Shape& shape, const Placement& place, bool fixed) {
     const contact::Skin skin = sample_shape(model, shape, place);
@@ -183,7 +185,8 @@ std::string Scenery::scene(const Json& more) {
                        {"first", own.first},
                        {"size", own.size},
                        {"unit", measure_of(model, own).si},
-                       {"position", placed(output)}});
+                       {"position", placed(output)},
+                       {"weights", std::vector<double>(own.weights.begin(), own.weights.end())}});
   }
   Json& outputs = head["outputs"] = Json::array();
   for (const OutputModel& own : model.outputs) {
@@ -212,7 +215,7 @@ void Scenery::add_solid_field(const State& state, int number, const std::string&
     for (const int cell : around) sum += cells[static_cast<std::size_t>(cell)];
     floats_.push_back(static_cast<float>(sum / static_cast<double>(around.size())));
   }
-  message_.add("solid" + std::to_string(number) + ".field", std::span<const float>(floats_));
+  message_.add("solid" + std::to_string(number) + "." + field, std::span<const float>(floats_));
 }
 
 /// Signals know the scene's own goals; these are what people have made of them.
@@ -248,7 +251,7 @@ std::string Scenery::frame(const State& state, const Show& show, const Goal& goa
     }
     message_.add("solid" + std::to_string(i), std::span<const std::int16_t>(shorts_));
     scales.push_back(scale);
-    if (!show.solids.empty()) add_solid_field(state, static_cast<int>(i), show.solids);
+    for (const std::string& field : show.solids) add_solid_field(state, static_cast<int>(i), field);
   }
   const auto add = [&](const std::string& name) { message_.add(name, std::span<const float>(floats_)); };
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
@@ -257,11 +260,12 @@ std::string Scenery::frame(const State& state, const Show& show, const Goal& goa
     floats_.clear();
     for (const double s : abscissae_[i]) put(floats_, rod::curve_point(shape, s).position);
     add(name);
-    if (show.rods.empty()) continue;
-    floats_.clear();
-    for (const double s : abscissae_[i])
-      floats_.push_back(static_cast<float>(rod_field(model, state, static_cast<int>(i), s, show.rods)));
-    add(name + ".field");
+    for (const std::string& field : show.rods) {
+      floats_.clear();
+      for (const double s : abscissae_[i])
+        floats_.push_back(static_cast<float>(rod_field(model, state, static_cast<int>(i), s, field)));
+      add(name + "." + field);
+    }
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i) {
     const RodSnapshot cable = sample_cable(model, state, static_cast<int>(i));

@@ -18,12 +18,16 @@ class Scenery {
  public:
   explicit Scenery(const Model& model);
 
+  /// All signals of a run: of each time those in their order.
+  struct History {
+    std::vector<double> times, values;
+  };
   /// Rest positions of surfaces, triangles, names, units, what motors can do. `more` joins its head.
-  std::string scene(const nlohmann::ordered_json& more);
+  std::string scene(const nlohmann::ordered_json& more, const History& history = {});
 
   /// Where everything is: of solids 16 bits per coordinate of how far surface nodes have moved since t = 0, to 1/32767
-  /// of the farthest; rods, bodies, contacts, points, outputs; signals, those of energies
-  /// NaN unless they are shown: they cost more than all else. `more` joins its head.
+  /// of the farthest; rods, bodies, contacts, points, outputs; fields that are shown, under their own names; signals,
+  /// those of energies NaN unless they are shown: they cost more than all else. `more` joins its head.
   std::string frame(const State& state, const Show& show, const Goal& goal, const nlohmann::ordered_json& more);
 
  private:
@@ -47,7 +51,7 @@ class Scenery {
   std::vector<std::int16_t> shorts_;
 };
 
-/// [s] range of what a motor is told, for a slider: its limits, else what the scene tells it and somewhat beyond.
+/// [SI] range of what a motor is told, for a slider: its limits, else what the scene tells it and somewhat beyond.
 Span slider_span(const Model& model, const ActuatorModel& actuator);
 
 }  // namespace sinew::live

@@ -6,11 +6,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <deque>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -30,9 +32,10 @@ using Error = beast::error_code;
 
 namespace {
 
-constexpr long kAhead = 2;                     ///< frames sent that have not been drawn yet
-constexpr std::chrono::seconds kPatience{10};  ///< for a request
-constexpr int kReported = 50;                  ///< refusals that are told, so that none fills a disk
+constexpr std::size_t kAhead = 2;                 ///< frames sent that have not been drawn yet
+constexpr std::chrono::seconds kPatience{10};     ///< for a request
+constexpr int kReported = 50;                     ///< refusals that are told, so that none fills a disk
+constexpr std::chrono::milliseconds kPause{100};  ///< before the next visitor, where none can be let in
 
 /// "localhost:8000" without the port.
 std::string host_of(std::string_view authority) {
@@ -57,17 +60,46 @@ std::string_view token_of(std::string_view target) {
 
 std::string_view text_of(beast::string_view own) { return {own.data(), own.size()}; }
 
+asio::ip::address numeric(const std::string& address) {
+  Error error;
+  const asio::ip::address own = asio::ip::make_address(address, error);
+  if (error)
+    throw InputError({.path = "--bind",
+                      .value = address,
+                      .rule = "is no numeric address",
+                      .remedy = "leave it out, for this machine alone, or give the number of an interface, as in "
+                                "`--bind 192.168.1.5`"});
+  return own;
+}
+
+/// "192.168.1.5", "[::1]".
+bool is_numeric(std::string host) {
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  Error error;
+  asio::ip::make_address(host, error);
+  return !error;
+}
+
+struct Frame {
+  Bytes bytes;
+  long number = 0;
+};
+
 using HttpRequest = http::request<http::empty_body>;
 
 }  // namespace
 
 struct Server::Own {
-  Own(const Place& at, Behind what) : place(at), behind(std::move(what)), acceptor(context) {}
+  Own(const Place& at, Behind what)
+      : place(at), behind(std::move(what)), loopback(is_loopback(at.address)), acceptor(context), pause(context) {}
 
   class Page;
   class Visit;
 
+  void run();
   void accept();
+  void offer_newest();
+  void tell_shown();
   /// Why a visitor may not come in; empty: may.
   std::string refusal(const HttpRequest& request, bool live) const;
   void report(const std::string& text) {
@@ -77,12 +109,20 @@ struct Server::Own {
 
   Place place;
   Behind behind;
-  asio::io_context context{1};
-  tcp::acceptor acceptor;
-  std::set<std::shared_ptr<Page>> pages;
+  bool loopback;
   int visits = 0;
   int reported = 0;
-  Bytes last;
+  asio::io_context context{1};
+  tcp::acceptor acceptor;
+  asio::steady_timer pause;
+  std::set<std::shared_ptr<Page>> pages;
+  const Page* holding = nullptr;  ///< whose hand is at a body
+  Frame last;
+
+  std::mutex mutex;  ///< of what follows
+  Frame newest;
+  bool offered = true;  ///< it has been; else that is under way
+
   std::thread thread;
 };
 
@@ -96,6 +136,8 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
     patience.idle_timeout = std::chrono::seconds(60);
     socket_.set_option(patience);
     socket_.read_message_max(kLongestRequest);
+    socket_.auto_fragment(false);
+    socket_.write_buffer_bytes(1 << 16);
     socket_.async_accept(request, [self = shared_from_this()](Error error) {
       if (error) return;
       if (self->own_.pages.size() >= kMostPages) {
@@ -103,21 +145,30 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
         self->socket_.async_close({websocket::close_code::try_again_later, "too many pages"}, [self](Error) {});
         return;
       }
-      self->own_.pages.insert(self);
       self->scene_ = std::make_shared<const std::string>(self->own_.behind.scene());
+      self->own_.pages.insert(self);
       self->frame_ = self->own_.last;
       self->write();
       self->read();
     });
   }
 
-  void offer(const Bytes& frame) {
+  void offer(const Frame& frame) {
     frame_ = frame;
     write();
   }
+  const Show& shown() const { return shown_; }
 
  private:
-  void leave() { own_.pages.erase(shared_from_this()); }
+  /// With all that it held and showed.
+  void leave() {
+    if (own_.pages.erase(shared_from_this()) == 0) return;
+    if (own_.holding == this) {
+      own_.holding = nullptr;
+      own_.behind.take(Release{});
+    }
+    own_.tell_shown();
+  }
 
   void read() {
     socket_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
@@ -135,13 +186,19 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
   void take(const std::string& text) {
     try {
       const Request request = own_.behind.read(text);
-      if (std::holds_alternative<Ack>(request)) {
-        drawn_ = sent_;
-        write();
-      } else {
-        own_.behind.take(request);
+      if (const Ack* ack = std::get_if<Ack>(&request)) {
+        const auto drawn = std::find(sent_.rbegin(), sent_.rend(), ack->frame);
+        sent_.erase(sent_.begin(), drawn.base());
+        return write();
       }
-    } catch (const InputError& error) {
+      if (const Show* show = std::get_if<Show>(&request)) {
+        shown_ = *show;
+        return own_.tell_shown();
+      }
+      if (std::holds_alternative<Grab>(request)) own_.holding = this;
+      if (std::holds_alternative<Release>(request) && own_.holding == this) own_.holding = nullptr;
+      own_.behind.take(request);
+    } catch (const std::exception& error) {
       own_.report(fmt::format("a message was refused: {}", error.what()));
       answer_ = nlohmann::json{{"refused", error.what()}}.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
       write();
@@ -153,9 +210,9 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
     if (writing_) return;
     if (scene_) return send(std::move(scene_), true);
     if (!answer_.empty()) return send(std::make_shared<const std::string>(std::exchange(answer_, {})), false);
-    if (!frame_ || sent_ - drawn_ >= kAhead) return;
-    ++sent_;
-    send(std::exchange(frame_, nullptr), true);
+    if (!frame_.bytes || sent_.size() >= kAhead) return;
+    sent_.push_back(frame_.number);
+    send(std::exchange(frame_.bytes, nullptr), true);
   }
 
   void send(Bytes bytes, bool binary) {
@@ -172,9 +229,11 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
   Own& own_;
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_{kLongestRequest + 1024};
-  Bytes scene_, frame_;
+  Bytes scene_;
+  Frame frame_;  ///< the newest that has not been sent
+  Show shown_;
   std::string answer_;
-  long sent_ = 0, drawn_ = 0;
+  std::deque<long> sent_;  ///< numbers of frames that have not been drawn yet
   bool writing_ = false;
 };
 
@@ -225,7 +284,7 @@ class Server::Own::Visit : public std::enable_shared_from_this<Visit> {
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Content-Security-Policy",
                   "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
-                  "media-src blob:; connect-src 'self' ws: wss:");
+                  "media-src blob:; connect-src 'self'; base-uri 'none'; form-action 'none'");
     response->keep_alive(false);
     response->body() = text;
     response->prepare_payload();
@@ -246,7 +305,7 @@ std::string Server::Own::refusal(const HttpRequest& request, bool live) const {
   const std::string_view authority = text_of(request[http::field::host]);
   const std::string host = host_of(authority);
   const bool known = host == "localhost" || host == "127.0.0.1" || host == "[::1]" || host == place.address ||
-                     host == "[" + place.address + "]";
+                     host == "[" + place.address + "]" || (!loopback && is_numeric(host));
   if (!known) return fmt::format("refused: the host {} is not this machine", io::show(host));
   const std::string_view origin = text_of(request[http::field::origin]);
   if (live && !origin.empty() && origin != "http://" + std::string(authority) &&
@@ -260,33 +319,63 @@ std::string Server::Own::refusal(const HttpRequest& request, bool live) const {
 void Server::Own::accept() {
   acceptor.async_accept([this](Error error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && visits < 4 * kMostPages) {
-      Error ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      std::make_shared<Visit>(*this, std::move(socket))->read();
+    if (error) {  // no descriptors left, say
+      pause.expires_after(kPause);
+      return pause.async_wait([this](Error ended) {
+        if (!ended) accept();
+      });
     }
     accept();
+    if (visits >= 4 * kMostPages) return;
+    Error ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    std::make_shared<Visit>(*this, std::move(socket))->read();
   });
 }
 
+/// What goes wrong for one page, as when there is no memory for its scene, is no end for the others.
+void Server::Own::run() {
+  for (;;) {
+    try {
+      context.run();
+      return;
+    } catch (const std::exception& error) {
+      report(fmt::format("a page was left: {}", error.what()));
+    }
+  }
+}
+
+void Server::Own::offer_newest() {
+  {
+    const std::lock_guard lock(mutex);
+    last = newest;
+    offered = true;
+  }
+  for (const std::shared_ptr<Page>& page : std::set(pages)) page->offer(last);
+}
+
+void Server::Own::tell_shown() {
+  Show all;
+  for (const std::shared_ptr<Page>& page : pages) all = together(std::move(all), page->shown());
+  behind.take(all);
+}
+
+bool is_loopback(const std::string& address) { return numeric(address).is_loopback(); }
+
 Server::Server(const Place& place, Behind behind) : own_(std::make_unique<Own>(place, std::move(behind))) {
   Error error;
-  const asio::ip::address address = asio::ip::make_address(place.address, error);
-  const auto fail = [&](const std::string& why) {
-    throw InputError({.path = "--bind",
-                      .value = fmt::format("{}:{}", place.address, place.port),
-                      .rule = "cannot be listened on: " + why,
-                      .remedy = "choose another --port, or leave it out"});
-  };
-  if (error) fail("it is no numeric address");
-  const tcp::endpoint endpoint(address, static_cast<unsigned short>(place.port));
+  const tcp::endpoint endpoint(numeric(place.address), static_cast<unsigned short>(place.port));
   own_->acceptor.open(endpoint.protocol(), error);
   if (!error) own_->acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) own_->acceptor.bind(endpoint, error);
   if (!error) own_->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) fail(error.message());
+  if (error)
+    throw InputError({.path = "--bind",
+                      .value = fmt::format("{}:{}", place.address, place.port),
+                      .rule = "cannot be listened on: " + error.message(),
+                      .remedy = "choose another --port, or leave it out"});
   own_->accept();
-  own_->thread = std::thread([own = own_.get()] { own->context.run(); });
+  own_->thread = std::thread([own = own_.get()] { own->run(); });
 }
 
 Server::~Server() {
@@ -297,11 +386,13 @@ Server::~Server() {
 
 int Server::port() const { return own_->acceptor.local_endpoint().port(); }
 
-void Server::publish(Bytes frame) {
-  asio::post(own_->context, [own = own_.get(), frame = std::move(frame)] {
-    own->last = frame;
-    for (const std::shared_ptr<Own::Page>& page : std::set(own->pages)) page->offer(frame);
-  });
+void Server::publish(Bytes frame, long number) {
+  {
+    const std::lock_guard lock(own_->mutex);
+    own_->newest = {std::move(frame), number};
+    if (!std::exchange(own_->offered, false)) return;  // one that is under way takes it along
+  }
+  asio::post(own_->context, [own = own_.get()] { own->offer_newest(); });
 }
 
 std::string random_token() {

@@ -11,7 +11,8 @@
 namespace sinew::live {
 
 /// Who may come: those who know the token, from pages of this very address. Hosts other than this machine's own name
-/// (localhost, 127.0.0.1, [::1]) and `address` are refused, so that no other site's name can stand for it.
+/// (localhost, 127.0.0.1, [::1]) and `address` are refused, so that no other site's name can stand for it; numeric
+/// ones, which no name server can point elsewhere, are let in where `address` is not of the loopback.
 struct Place {
   std::string address = "127.0.0.1";  ///< numeric; of one of this machine's interfaces
   int port = 0;                       ///< 0: any that is free
@@ -28,7 +29,7 @@ struct Behind {
 };
 
 /// Frames go to every page that has drawn the last ones; one that is slow gets the newest when it can, and keeps
-/// nobody waiting. At most kMostPages at a time.
+/// nobody waiting. What is behind is asked to show what any page shows. At most kMostPages at a time.
 class Server {
  public:
   static constexpr int kMostPages = 32;
@@ -40,13 +41,16 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   int port() const;
-  /// For every page; from any thread.
-  void publish(Bytes frame);
+  /// For every page; from any thread. Pages acknowledge it by its number.
+  void publish(Bytes frame, long number);
 
  private:
   struct Own;
   std::unique_ptr<Own> own_;
 };
+
+/// Whether it is of this machine alone. Throws InputError where it is no numeric address.
+bool is_loopback(const std::string& address);
 
 /// 128 random bits as 32 hexadecimal digits.
 std::string random_token();

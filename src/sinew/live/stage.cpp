@@ -6,6 +6,7 @@
 
 #include "sinew/error/input_error.hpp"
 #include "sinew/sim/motors.hpp"
+#include "sinew/sim/signals.hpp"
 
 namespace sinew::live {
 
@@ -13,14 +14,17 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kFrames = 120.0;   ///< at most so many a second
-constexpr double kHand = 1.0;       ///< [s] in which a motor is moved over its whole range
-constexpr double kQuick = 12.0;     ///< [1/s] of the spring by which a hand leads a target
-constexpr double kArm = 1.0;        ///< sizes of the scene a second that a target is moved by
-constexpr double kPatience = 0.25;  ///< [s] behind the wall's time after which that is given up
+constexpr double kFrames = 120.0;        ///< at most so many a second
+constexpr double kHand = 1.0;            ///< [s] in which a motor is moved over its whole range
+constexpr double kQuick = 12.0;          ///< [1/s] of the spring by which a hand leads a target
+constexpr double kArm = 1.0;             ///< sizes of the scene a second that a target is moved by
+constexpr double kPatience = 0.25;       ///< [s] behind the wall's time after which that is given up
+constexpr std::size_t kPlotted = 20000;  ///< times of a run that plots have, about
+constexpr double kCalm = 1.0;            ///< [s] after which a body that was pulled at has found its way back
 
 /// The model with motors no quicker than a hand, and two linearisations a step where the scene has one: of twenty
-/// seconds of targets that are thrown about, a trunk of thin cables survives one or two with one, and all with two.
+/// seconds of targets that are thrown about, a trunk of thin cables survives one or two with one, and all with two. (A
+/// body that is pulled at and let go needs converged steps: `advance_once`.)
 Model paced(Model model) {
   for (ActuatorModel& own : model.actuators) {
     const Span span = slider_span(model, own);
@@ -79,7 +83,11 @@ void take(const Request& request, Wishes& wishes) {
 // Simulation.
 
 Simulation::Simulation(const Model& model, int threads, OnFrame on_frame)
-    : model_(paced(model)), on_frame_(std::move(on_frame)), scenery_(model_), workspace_(model_, threads) {
+    : model_(paced(model)),
+      iterations_(model_.scene.newton.iterations),
+      on_frame_(std::move(on_frame)),
+      scenery_(model_),
+      workspace_(model_, threads) {
   if (model.scene.analysis == Analysis::statics || model.scene.analysis == Analysis::modal)
     throw InputError({.path = "analysis",
                       .rule = "cannot be watched live: a static or modal analysis does not go on in time",
@@ -113,38 +121,39 @@ void Simulation::take(const Request& request) {
 
 void Simulation::begin() {
   state_ = initial_state(model_);
-  command_ = command_of(model_, state_);
-  goal_ = goal_at(model_, 0.0);
-  goal_speed_.setZero(goal_.at.size());
-  led_.assign(model_.effectors.size(), false);
+  lead_.goal = goal_at(model_, 0.0);
+  lead_.speed.setZero(lead_.goal.at.size());
+  lead_.hands.assign(model_.effectors.size(), false);
   report_ = {};
   trouble_.clear();
+  calm_ = 0.0;
 }
 
 /// Where the scene, or a hand, wants effectors: what is dragged goes there like a damped spring, so that motors are
 /// asked for nothing sudden, and back again when it is let go.
-Goal Simulation::led(Goal goal, const Wishes& wishes) {
+Simulation::Lead Simulation::led(Goal goal, const Wishes& wishes) const {
   const double h = model_.scene.time.step;
+  Lead next{std::move(goal), lead_.speed, lead_.hands};
   for (std::size_t i = 0; i < model_.effectors.size(); ++i) {
     const EffectorModel& own = model_.effectors[i];
     const auto wish = wishes.aimed.find(static_cast<int>(i));
-    if (wish != wishes.aimed.end()) led_[i] = true;
-    if (!led_[i]) continue;
-    auto at = goal.at.segment(own.first, own.size);
-    auto speed = goal_speed_.segment(own.first, own.size);
+    if (wish != wishes.aimed.end()) next.hands[i] = true;
+    if (!next.hands[i]) continue;
+    auto at = next.goal.at.segment(own.first, own.size);
+    auto speed = next.speed.segment(own.first, own.size);
     const Eigen::VectorXd to = wish == wishes.aimed.end() ? Eigen::VectorXd(at) : wish->second;
-    const Eigen::VectorXd from = goal_.at.segment(own.first, own.size);
-    const double metre = measure_of(model_, own).unit / 1e-3, most = kArm * model_.size * metre;
+    const Eigen::VectorXd from = lead_.goal.at.segment(own.first, own.size);
+    const double per_metre = measure_of(model_, own).unit / 1e-3, most = kArm * model_.size * per_metre;
     // Implicit in the speed: no step is too long.
     speed = (speed + h * kQuick * kQuick * (to - from)) / (1.0 + 2.0 * h * kQuick + h * h * kQuick * kQuick);
     if (speed.norm() > most) speed *= most / speed.norm();
     at = from + h * speed;
-    if (wish == wishes.aimed.end() && (to - at).norm() < 1e-4 * metre) {
-      led_[i] = false;
+    if (wish == wishes.aimed.end() && (to - at).norm() < 1e-4 * per_metre) {
+      next.hands[i] = false;
       speed.setZero();
     }
   }
-  return goal;
+  return next;
 }
 
 /// One step to the next point of the time grid, or none.
@@ -159,7 +168,8 @@ bool Simulation::advance_once(const Wishes& wishes) {
     forward = forward || (own.sought() && wish != wishes.told.end());
     if (wish != wishes.told.end()) {
       const Span span = slider_span(model_, own);
-      told.actuators[i] = towards(now.actuators[i], wish->second, (span.most - span.least) * h / kHand);
+      const double wanted = std::clamp(wish->second, span.least, span.most);
+      told.actuators[i] = towards(now.actuators[i], wanted, (span.most - span.least) * h / kHand);
     } else if (!std::holds_alternative<Table>(own.drive)) {
       told.actuators[i] = now.actuators[i];
     }
@@ -167,19 +177,28 @@ bool Simulation::advance_once(const Wishes& wishes) {
   for (std::size_t i = 0; i < model_.loads.size(); ++i) {
     if (std::holds_alternative<External>(model_.loads[i].factor)) told.loads[i] = now.loads[i];
   }
-  if (wishes.grip) told.grips = {*wishes.grip};
-  const Goal goal = led(goal_at(model_, time), wishes);
-  const Told by{&told, model_.effectors.empty() ? nullptr : &goal, forward};
+  if (wishes.grip) {
+    told.grips = {*wishes.grip};
+    calm_ = state_.time + kCalm;
+  }
+  model_.scene.newton.iterations = state_.time < calm_ ? 0 : iterations_;
+  Lead next = led(goal_at(model_, time), wishes);
+  const Told by{&told, model_.effectors.empty() ? nullptr : &next.goal, forward};
   const long before = state_.grid;
   do {
-    report_ = advance(model_, workspace_, state_, Evaluation::full, by);
+    try {
+      report_ = advance(model_, workspace_, state_, Evaluation::full, by);
+    } catch (const std::exception& error) {  // memory, say: people still look on
+      trouble_ = error.what();
+      return false;
+    }
     if (!accepted(report_.status)) {
       trouble_ = std::string(to_string(report_.status)) + (report_.detail.empty() ? "" : ": " + report_.detail) + ". " +
                  std::string(explain(report_.status));
       return false;
     }
   } while (state_.grid == before);
-  goal_ = goal;
+  lead_ = std::move(next);
   trouble_.clear();
   return true;
 }
@@ -200,58 +219,69 @@ void Simulation::publish(const Wishes& wishes) {
                {"trouble", trouble_}};
   Json& told = more["mine"] = Json::object();
   for (const auto& [number, value] : wishes.told) told[model_.actuators[static_cast<std::size_t>(number)].name] = value;
-  auto bytes = std::make_shared<const std::string>(scenery_.frame(state_, wishes.show, goal_, more));
+  auto bytes = std::make_shared<const std::string>(scenery_.frame(state_, wishes.show, lead_.goal, more));
   frame_seconds_ = 0.9 * frame_seconds_ + 0.1 * seconds_since(start);
-  on_frame_(std::move(bytes));
+  on_frame_(std::move(bytes), frame_);
 }
 
 void Simulation::work() {
   const double h = model_.scene.time.step;
-  Clock::time_point due = Clock::now(), shown = due - std::chrono::seconds(1), counted = due;
-  double simulated = 0.0;
+  const auto per_frame = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / kFrames));
+  Clock::time_point due = Clock::now(), shown = due - per_frame, counted = due;
+  double simulated = 0.0, speed = 1.0;
+  bool playing = false, untold = true;  // something has changed that no frame has told yet
+  const auto after = [&] {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(h / speed));
+  };
   for (;;) {
     Wishes wishes;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait(lock,
-                 [this] { return end_ || wishes_.playing || wishes_.steps > 0 || wishes_.reset || wishes_.changed; });
+      const auto stirred = [this] { return end_ || wishes_.changed || wishes_.steps > 0; };
+      if (playing || untold) {
+        const Clock::time_point next = shown + per_frame;
+        wake_.wait_until(lock, !playing ? next : untold ? std::min(due, next) : due, stirred);
+      } else {
+        wake_.wait(lock, stirred);
+      }
       if (end_) return;
       wishes = wishes_;
       wishes_.steps = std::max(wishes_.steps - 1, 0);
       wishes_.reset = false;
       wishes_.changed = false;
     }
+    untold = untold || wishes.changed;
     if (wishes.reset) begin();
-    const bool goes = wishes.playing || wishes.steps > 0;
-    if (goes) {
+    if (wishes.playing && !playing) {  // from now on: what stood still is not made up for
+      due = counted = Clock::now();
+      simulated = 0.0;
+    }
+    playing = wishes.playing;
+    if (std::exchange(speed, wishes.speed) != wishes.speed) due = std::min(due, Clock::now() + after());
+    if (wishes.steps > 0 || (playing && Clock::now() >= due)) {
       const Clock::time_point start = Clock::now();
       if (advance_once(wishes)) {
         simulated += h;
       } else {
         const std::lock_guard lock(mutex_);
-        wishes.playing = wishes_.playing = false;
+        playing = wishes.playing = wishes_.playing = false;
         wishes_.steps = 0;
       }
       step_seconds_ = 0.9 * step_seconds_ + 0.1 * seconds_since(start);
+      due += after();
+      if (seconds_since(due) > kPatience) due = Clock::now();
+      untold = true;
     }
-    const double wall = seconds_since(counted);
-    if (wall > 0.5) {
+    if (const double wall = seconds_since(counted); playing && wall > 0.5) {
       realtime_ = simulated / wall;
       simulated = 0.0;
       counted = Clock::now();
     }
-    if (!wishes.playing || wishes.changed || seconds_since(shown) > 1.0 / kFrames) {
+    if (untold && Clock::now() >= shown + per_frame) {
       publish(wishes);
       shown = Clock::now();
+      untold = false;
     }
-    if (!wishes.playing) {
-      due = Clock::now();
-      continue;
-    }
-    due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(h / wishes.speed));
-    if (seconds_since(due) > kPatience) due = Clock::now();
-    std::unique_lock lock(mutex_);
-    wake_.wait_until(lock, due, [this] { return end_; });
   }
 }
 
@@ -275,7 +305,15 @@ std::string Replay::scene() {
   Scenery own(model_);
   Json times = Json::array();
   for (const io::RecordedStep& step : recording_.steps) times.push_back(step.time);
-  return own.scene({{"mode", "replay"}, {"times", std::move(times)}});
+  Scenery::History history;
+  if (recording_.header.signal_names == signal_names(model_)) {
+    for (std::size_t i = 0, every = 1 + recording_.steps.size() / kPlotted; i < recording_.steps.size(); i += every) {
+      const io::RecordedStep& step = recording_.steps[i];
+      history.times.push_back(step.time);
+      history.values.insert(history.values.end(), step.signals.begin(), step.signals.end());
+    }
+  }
+  return own.scene({{"mode", "replay"}, {"times", std::move(times)}}, history);
 }
 
 void Replay::take(const Request& request) {
@@ -288,11 +326,23 @@ void Replay::take(const Request& request) {
 
 std::string Replay::frame(long number, const Wishes& wishes) {
   const io::RecordedStep& step = recording_.steps[static_cast<std::size_t>(number)];
-  return scenery_.frame(unpack(model_, step.state), wishes.show, goal_at(model_, step.time),
+  State state;
+  std::string trouble;
+  try {
+    state = unpack(model_, step.state);
+  } catch (const std::invalid_argument& error) {
+    state = initial_state(model_);
+    trouble = error.what();
+  }
+  const auto acts = [](const ContactState& own) { return !own.force.isZero(); };
+  const auto contacts = std::count_if(state.contacts.begin(), state.contacts.end(), acts);
+  return scenery_.frame(state, wishes.show, goal_at(model_, step.time),
                         {{"frame", number},
                          {"status", step.status},
                          {"targets", step.targets},
                          {"newton", step.newton},
+                         {"contacts", contacts},
+                         {"trouble", trouble},
                          {"playing", wishes.playing},
                          {"speed", wishes.speed}});
 }
@@ -315,7 +365,7 @@ void Replay::work() {
       wishes_.reset = wishes_.changed = false;
       wishes_.sought.reset();
     }
-    const double passed = seconds_since(before);
+    const double passed = played ? seconds_since(before) : 0.0;
     before = Clock::now();
     const long shown = number;
     if (wishes.reset || (wishes.playing && !played && number == last)) {
@@ -335,7 +385,8 @@ void Replay::work() {
         wishes.changed = true;
       }
     }
-    if (number != shown || wishes.changed) on_frame_(std::make_shared<const std::string>(frame(number, wishes)));
+    if (number != shown || wishes.changed)
+      on_frame_(std::make_shared<const std::string>(frame(number, wishes)), number);
     played = wishes.playing;
     if (!wishes.playing) continue;
     std::unique_lock lock(mutex_);

@@ -1,7 +1,6 @@
 // What pages look at: a simulation that goes on while they watch, or a recorded run that is played.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -22,8 +21,8 @@ namespace sinew::live {
 
 /// A message that many pages share.
 using Bytes = std::shared_ptr<const std::string>;
-/// Called, on the stage's thread, with every frame.
-using OnFrame = std::function<void(Bytes)>;
+/// Called, on the stage's thread, with every frame and the number that pages acknowledge it by.
+using OnFrame = std::function<void(Bytes, long number)>;
 
 /// What whoever looks has asked for and is not done with. Each request changes a part of it at once, so that however
 /// many come nothing piles up.
@@ -35,7 +34,7 @@ struct Wishes {
   std::map<int, double> told;            ///< of actuators, where not the scene's own
   std::map<int, Eigen::VectorXd> aimed;  ///< of effectors
   std::optional<Grip> grip;
-  std::optional<long> sought;
+  std::optional<long> sought;  ///< frame of a recorded run
   Show show;
   bool changed = true;  ///< what is shown is to be told again
 };
@@ -58,23 +57,28 @@ class Simulation {
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// Goals of one step, and what leads them there.
+  struct Lead {
+    Goal goal;
+    Eigen::VectorXd speed;
+    std::vector<bool> hands;  ///< effectors whose goal is, or was, a hand's
+  };
   void work();
   bool advance_once(const Wishes& wishes);
-  Goal led(Goal goal, const Wishes& wishes);
+  Lead led(Goal goal, const Wishes& wishes) const;
   void publish(const Wishes& wishes);
   void begin();
 
-  const Model model_;
+  Model model_;           ///< only how often its steps are linearised changes
+  const int iterations_;  ///< while nothing pulls at bodies
   OnFrame on_frame_;
   Scenery scenery_;
   Workspace workspace_;
   State state_;
-  Command command_;
-  Goal goal_;
-  Eigen::VectorXd goal_speed_;
-  std::vector<bool> led_;  ///< effectors whose goal is, or was, a hand's
+  Lead lead_;
   StepReport report_;
   std::string trouble_;
+  double calm_ = 0.0;  ///< [s] from when on nothing pulls at bodies, nor has of late
   long frame_ = 0;
   double realtime_ = 0.0, step_seconds_ = 0.0, frame_seconds_ = 0.0;
 
@@ -96,7 +100,7 @@ class Replay {
 
   std::string scene();
   void take(const Request& request);
-  /// One frame of it. Not while it plays.
+  /// One frame of it; of a step that cannot be read the start, and why. Not while it plays.
   std::string frame(long number, const Wishes& wishes);
   long frames() const { return static_cast<long>(recording_.steps.size()); }
 
