@@ -1,0 +1,126 @@
+"""What the scripts under examples/paper and examples/validation share: a result, its numbers beside what they must be, its page.
+
+Each folder there has a run.py that makes one Result. What it writes, out/dossier/<group>/<name>/results.json, is what
+scripts/make_dossier gathers into docs/validation.md."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")  # pictures are files here
+
+ROOT = Path(__file__).resolve().parents[1]
+MARKS = ("<!-- what we get -->", "<!-- end -->")
+
+
+class Result:
+    """What one script finds, beside what others say or what must hold. finish() writes out/dossier/<group>/<name>/,
+    brings README.md up to date where --write is given, and ends the script with 1 where something does not hold."""
+
+    def __init__(self, script: str, title: str) -> None:
+        self.folder = Path(script).resolve().parent
+        self.out = ROOT / "out" / "dossier" / self.folder.parent.name / self.folder.name
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.title = title
+        self.parts: list[str] = []
+        self.checks: list[dict[str, Any]] = []
+        self.began = time.perf_counter()
+
+    def scene(self, name: str = "scene.yaml") -> Path:
+        """A file beside the script."""
+        return self.folder / name
+
+    def say(self, text: str) -> None:
+        """A paragraph of the page."""
+        self.parts.append(text)
+
+    def table(self, columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
+        """A table of the page."""
+        self.parts.append(_table(columns, rows))
+
+    def picture(self, figure: Any, name: str, what: str) -> None:
+        """A Matplotlib figure, kept as a file and shown in the page. `what` is told to who cannot see it."""
+        figure.savefig(self.out / name, dpi=110)
+        self.parts.append(f"![{what}]({name})")
+
+    def check(self, what: str, value: float, least: float = float("-inf"), most: float = float("inf"), unit: str = "") -> None:
+        """Asserts least <= value <= most."""
+        low, high = least > float("-inf"), most < float("inf")
+        if low and high:
+            must = f"{least:.4g} to {most:.4g}"
+        else:
+            must = f"at least {least:.4g}" if low else f"at most {most:.4g}"
+        self._add(what, value, unit, must=must, holds=bool(least <= value <= most))
+
+    def compare(
+        self, what: str, ours: float, reference: float, tolerance: float, unit: str = "", source: str = "", of: float | None = None
+    ) -> None:
+        """Asserts that ours is within tolerance of what `source` says, relative to the reference, or to `of` where the reference may vanish."""
+        deviation = abs(ours - reference) / abs(reference if of is None else of)
+        self._add(
+            what, ours, unit, must=f"{reference:.6g} within {100 * tolerance:.3g} %", holds=bool(deviation <= tolerance),
+            reference=reference, source=source, deviation=deviation, tolerance=tolerance,
+        )
+
+    def finish(self) -> None:
+        """Writes what was found; ends the script with 1 where something does not hold."""
+        rows = [
+            [own["what"], f"{own['value']:.6g} {own['unit']}", f"{own['must']} {own['unit']}",
+             f"{100 * own['deviation']:.2g} %" if "deviation" in own else "", "yes" if own["holds"] else "**no**"]
+            for own in self.checks
+        ]
+        compared = any(row[3] for row in rows)
+        if not compared:
+            rows = [[*row[:3], row[4]] for row in rows]
+        self.table(["asserted", "value", "must be", *(["deviation"] if compared else []), "holds"], rows)
+        text = "\n\n".join(self.parts)
+        seconds = time.perf_counter() - self.began
+        (self.out / "results.md").write_text(f"# {self.title}\n\n{text}\n")
+        (self.out / "results.json").write_text(
+            json.dumps({"title": self.title, "seconds": round(seconds, 1), "checks": self.checks}, indent=1) + "\n"
+        )
+        if "--write" in sys.argv[1:]:
+            self._write(text)
+        print(f"{self.title}: {seconds:.0f} s")
+        for row in rows:
+            print("  " + ("holds     " if row[-1] == "yes" else "DOES NOT  ") + f"{row[0]}: {row[1]} ({row[2]})")
+        if not all(own["holds"] for own in self.checks):
+            raise SystemExit(1)
+
+    def _add(self, what: str, value: float, unit: str, **more: Any) -> None:
+        self.checks.append({"what": what, "value": float(value), "unit": unit, **more})
+
+    def _write(self, text: str) -> None:
+        page = self.folder / "README.md"
+        before, rest = page.read_text().split(MARKS[0])
+        after = rest.split(MARKS[1])[1]
+        page.write_text(f"{before}{MARKS[0]}\n\n{text}\n\n{MARKS[1]}{after}")
+        for picture in self.out.glob("*.png"):
+            shutil.copyfile(picture, self.folder / picture.name)
+
+
+def run_all(group: Path) -> None:
+    """Runs every run.py of a group of folders, one after the other; ends with 1 if one of them fails."""
+    begin = time.perf_counter()
+    failed = [
+        script.parent.name
+        for script in sorted(group.glob("*/run.py"))
+        if subprocess.run([sys.executable, str(script), *sys.argv[1:]], check=False).returncode
+    ]
+    print(f"{time.perf_counter() - begin:.0f} s; " + ("not as told: " + ", ".join(failed) if failed else "all as told"))
+    raise SystemExit(1 if failed else 0)
+
+
+def _table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    lines += ["| " + " | ".join(str(value) for value in row) + " |" for row in rows]
+    return "\n".join(lines)
