@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 
 matplotlib.use("Agg")  # pictures are files here
 
 ROOT = Path(__file__).resolve().parents[1]
+VALUES = ROOT / "examples" / "validation" / "reference_values.json"
 MARKS = ("<!-- what we get -->", "<!-- end -->")
 
 
@@ -30,6 +32,7 @@ class Result:
         self.folder = Path(script).resolve().parent
         self.out = ROOT / "out" / "dossier" / self.folder.parent.name / self.folder.name
         self.out.mkdir(parents=True, exist_ok=True)
+        (self.out / "results.json").unlink(missing_ok=True)  # a script that breaks off leaves no older result behind
         self.title = title
         self.parts: list[str] = []
         self.checks: list[dict[str, Any]] = []
@@ -38,6 +41,14 @@ class Result:
     def scene(self, name: str = "scene.yaml") -> Path:
         """A file beside the script."""
         return self.folder / name
+
+    def reference(self, entry: str) -> dict[str, Any]:
+        """An entry of reference_values.json, whose `case` must be this folder: so none is left without a script."""
+        own: dict[str, Any] = json.loads(VALUES.read_text())[entry]
+        case = f"{self.folder.parent.name}/{self.folder.name}"
+        if own.get("case") != case:
+            raise ValueError(f"{VALUES.name}: {entry} must name its case {case}, not {own.get('case')}")
+        return own
 
     def say(self, text: str) -> None:
         """A paragraph of the page."""
@@ -71,6 +82,17 @@ class Result:
             reference=reference, source=source, deviation=deviation, tolerance=tolerance,
         )
 
+    def compare_all(
+        self, what: str, ours: Any, reference: Any, tolerance: float, unit: str = "", source: str = "", of: float | None = None
+    ) -> None:
+        """Asserts the same of every number of two arrays; the one that is furthest off is told."""
+        own, right = np.ravel(np.asarray(ours, dtype=float)), np.ravel(np.asarray(reference, dtype=float))
+        if own.shape != right.shape or own.size == 0:
+            raise ValueError(f"{what}: {own.size} numbers beside {right.size} of the reference")
+        off = np.abs(own - right) / np.abs(right if of is None else of)
+        worst = int(np.argmax(np.where(np.isnan(off), np.inf, off)))
+        self.compare(f"{what} (worst of {own.size})", own[worst], right[worst], tolerance, unit, source, of)
+
     def finish(self) -> None:
         """Writes what was found; ends the script with 1 where something does not hold."""
         rows = [
@@ -86,7 +108,11 @@ class Result:
         seconds = time.perf_counter() - self.began
         (self.out / "results.md").write_text(f"# {self.title}\n\n{text}\n")
         (self.out / "results.json").write_text(
-            json.dumps({"title": self.title, "seconds": round(seconds, 1), "checks": self.checks}, indent=1) + "\n"
+            json.dumps(
+                {"title": self.title, "seconds": round(seconds, 1), "commit": _commit(), "date": time.strftime("%F"), "checks": self.checks},
+                indent=1,
+            )
+            + "\n"
         )
         if "--write" in sys.argv[1:]:
             self._write(text)
@@ -111,13 +137,18 @@ class Result:
 def run_all(group: Path) -> None:
     """Runs every run.py of a group of folders, one after the other; ends with 1 if one of them fails."""
     begin = time.perf_counter()
-    failed = [
-        script.parent.name
-        for script in sorted(group.glob("*/run.py"))
-        if subprocess.run([sys.executable, str(script), *sys.argv[1:]], check=False).returncode
-    ]
+    failed = []
+    for script in sorted(group.glob("*/run.py")):
+        (ROOT / "out" / "dossier" / group.name / script.parent.name / "results.json").unlink(missing_ok=True)
+        if subprocess.run([sys.executable, str(script), *sys.argv[1:]], check=False).returncode:
+            failed.append(script.parent.name)
     print(f"{time.perf_counter() - begin:.0f} s; " + ("not as told: " + ", ".join(failed) if failed else "all as told"))
     raise SystemExit(1 if failed else 0)
+
+
+def _commit() -> str:
+    told = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    return told.stdout.strip() or "unknown"
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
