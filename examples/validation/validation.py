@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -52,15 +52,35 @@ def straight_rod(length: float, section: Any, sections: int = 1, strains: Any = 
     )
 
 
-def block(cells: tuple[int, int, int], place: Callable[[Array], Array], kind: str = "hex8") -> sinew.Mesh:
-    """A unit cube cut into so many boxes, its points (nodes, 3) moved to where `place` puts them; `tet`: six tetrahedra
-    in each box, which `order: 2` of a solid turns into 10-node ones."""
+def block(
+    cells: tuple[int, int, int], place: Callable[[Array], Array], kind: str = "hex8", groups: Mapping[str, Callable[[Array], npt.NDArray[np.bool_]]] = {}
+) -> sinew.Mesh:
+    """A unit cube cut into so many boxes, its points (nodes, 3) moved to where `place` puts them; `tet4`, `tet10`: six
+    tetrahedra in each box, which `order: 2` of a solid turns into 10-node ones.
+
+    groups: the faces of cells, or else the edges, all of whose points pass a test."""
     cube = sinew.Mesh.bar((1.0, 1.0, 1.0), cells)
     points, boxes = place(cube.points + [0.0, 0.5, 0.5]), cube.cells["hexahedron"]
     if kind == "hex8":
-        return sinew.Mesh(points, {"hexahedron": boxes})
-    parts = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
-    return sinew.Mesh(points, {"tetra": np.concatenate([boxes[:, part] for part in parts])})
+        name, parts, corners = "hexahedron", boxes, [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    else:
+        six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
+        name, parts, corners = "tetra", np.concatenate([boxes[:, part] for part in six]), [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]]
+    faces = np.concatenate([parts[:, corner] for corner in corners])
+    edges = np.concatenate([np.stack([faces[:, i - 1], faces[:, i]], axis=1) for i in range(faces.shape[1])])
+    own: dict[str, list[Any]] = {}
+    members: dict[str, dict[str, Any]] = {}
+    for group, test in groups.items():
+        passed = test(points)
+        for form, sets in [("quad" if kind == "hex8" else "triangle", faces), ("line", edges)]:
+            chosen = sets[passed[sets].all(axis=1)]
+            _, first = np.unique(np.sort(chosen, axis=1), axis=0, return_index=True)
+            if len(first):
+                begin = sum(map(len, own.get(form, [])))
+                own.setdefault(form, []).append(chosen[first])
+                members[group] = {form: np.arange(begin, begin + len(first))}
+                break
+    return sinew.Mesh(points, {name: parts, **{form: np.concatenate(sets) for form, sets in own.items()}}, members)
 
 
 def solid_scene(mesh: sinew.Mesh, kind: str, material: sinew.SolidMaterial, fixed: list[sinew.Held], **more: Any) -> sinew.Scene:
