@@ -28,9 +28,9 @@ class Result:
     """What one script finds, beside what others say or what must hold. finish() writes out/dossier/<group>/<name>/,
     brings README.md up to date where --write is given, and ends the script with 1 where something does not hold."""
 
-    def __init__(self, script: str, title: str) -> None:
+    def __init__(self, script: str, title: str, results: Path = ROOT / "out" / "dossier") -> None:
         self.folder = Path(script).resolve().parent
-        self.out = ROOT / "out" / "dossier" / self.folder.parent.name / self.folder.name
+        self.out = results / self.folder.parent.name / self.folder.name
         self.out.mkdir(parents=True, exist_ok=True)
         (self.out / "results.json").unlink(missing_ok=True)  # a script that breaks off leaves no older result behind
         self.title = title
@@ -93,11 +93,15 @@ class Result:
         worst = int(np.argmax(np.where(np.isnan(off), np.inf, off)))
         self.compare(f"{what} (worst of {own.size})", own[worst], right[worst], tolerance, unit, source, of)
 
+    def tell(self, what: str, ours: float, reference: float, unit: str = "", source: str = "") -> None:
+        """A number beside that of others which is shown and not asserted, as a time is."""
+        self._add(what, ours, unit, must=f"{reference:.6g}, not asserted", holds=True, reference=reference, source=source, told=True)
+
     def finish(self) -> None:
         """Writes what was found; ends the script with 1 where something does not hold."""
         rows = [
             [own["what"], f"{own['value']:.6g} {own['unit']}", f"{own['must']} {own['unit']}",
-             f"{100 * own['deviation']:.2g} %" if "deviation" in own else "", "yes" if own["holds"] else "**no**"]
+             f"{100 * own['deviation']:.2g} %" if "deviation" in own else "", "told" if "told" in own else "yes" if own["holds"] else "**no**"]
             for own in self.checks
         ]
         compared = any(row[3] for row in rows)
@@ -118,7 +122,7 @@ class Result:
             self._write(text)
         print(f"{self.title}: {seconds:.0f} s")
         for row in rows:
-            print("  " + ("holds     " if row[-1] == "yes" else "DOES NOT  ") + f"{row[0]}: {row[1]} ({row[2]})")
+            print("  " + {"yes": "holds     ", "told": "is told   "}.get(row[-1], "DOES NOT  ") + f"{row[0]}: {row[1]} ({row[2]})")
         if not all(own["holds"] for own in self.checks):
             raise SystemExit(1)
 

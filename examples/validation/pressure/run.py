@@ -30,7 +30,7 @@ def elastica(steps: int) -> Array:
         own = own + h / 6 * (a + 2 * b + 2 * c + slope(own + h * c))
         points.append(own[4:])
     turned = np.array([[np.cos(own[3]), np.sin(own[3])], [-np.sin(own[3]), np.cos(own[3])]])
-    return np.array([[1, -1]] * (steps + 1)) * ((own[4:] - np.array(points)) @ turned.T) * [1, -1]
+    return np.asarray((own[4:] - np.array(points)) @ turned.T)
 
 
 def bent(kind: str, cells: tuple[int, int, int]) -> tuple[Array, Array]:
