@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Array, Result, block, straight_rod
+from validation import Result, block, straight_rod
 
 import sinew
 
