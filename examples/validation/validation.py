@@ -13,9 +13,9 @@ import numpy.typing as npt
 import sinew
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from dossier import Result  # noqa: E402
+from dossier import ROOT, Result  # noqa: E402
 
-__all__ = ["ALL", "BENDING", "EXTENSIBLE", "RAMP", "Array", "Result", "block", "shoot", "solid_scene", "stiffness", "straight_rod"]
+__all__ = ["ALL", "BENDING", "EXTENSIBLE", "RAMP", "ROOT", "Array", "Result", "block", "path_length", "shoot", "solid_scene", "stiffness", "straight_rod"]
 
 Array = npt.NDArray[np.float64]
 BENDING = ["torsion", "bending_y", "bending_z"]
@@ -52,27 +52,48 @@ def straight_rod(length: float, section: Any, sections: int = 1, strains: Any = 
     )
 
 
-def block(
-    cells: tuple[int, int, int], place: Callable[[Array], Array], kind: str = "hex8", groups: Mapping[str, Callable[[Array], npt.NDArray[np.bool_]]] = {}
-) -> sinew.Mesh:
-    """A unit cube cut into so many boxes, its points (nodes, 3) moved to where `place` puts them; `tet4`, `tet10`: six
-    tetrahedra in each box, which `order: 2` of a solid turns into 10-node ones.
+def path_length(path: Array) -> float:
+    """[m] of the curve that the engine lays through these points."""
+    rod = sinew.Rod(path=path.tolist(), section=stiffness(1, 1, 1, 1, 1, 1))
+    model = sinew.build(sinew.Scene(analysis="quasi_static", rods={"rod": rod}))
+    return float(model.initial_state().snapshot().rods[0].abscissa[-1])
 
-    groups: the faces of cells, or else the edges, all of whose points pass a test."""
+
+Groups = Mapping[str, Callable[[Array], npt.NDArray[np.bool_]]]
+
+
+def block(cells: tuple[int, int, int], place: Callable[[Array], Array], kind: str = "hex8", groups: Groups = {}) -> sinew.Mesh:
+    """A unit cube cut into so many boxes, of hexahedra or of six tetrahedra each (`hex8`, `tet4`, `tet10`), its points (nodes, 3) moved to where `place`
+    puts them, those in the middle of edges, too.
+
+    groups: the faces of cells, or else the edges, all of whose nodes pass a test."""
     cube = sinew.Mesh.bar((1.0, 1.0, 1.0), cells)
-    points, boxes = place(cube.points + [0.0, 0.5, 0.5]), cube.cells["hexahedron"]
+    unit, boxes = cube.points + [0.0, 0.5, 0.5], cube.cells["hexahedron"]
     if kind == "hex8":
-        name, parts, corners = "hexahedron", boxes, [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+        parts, corners = boxes, [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
     else:
         six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
-        name, parts, corners = "tetra", np.concatenate([boxes[:, part] for part in six]), [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]]
+        parts, corners = np.concatenate([boxes[:, part] for part in six]), [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]]
+    name, names = {"hex8": ("hexahedron", ["quad", "line"]), "tet4": ("tetra", ["triangle", "line"]), "tet10": ("tetra10", ["triangle6", "line3"])}[kind]
     faces = np.concatenate([parts[:, corner] for corner in corners])
-    edges = np.concatenate([np.stack([faces[:, i - 1], faces[:, i]], axis=1) for i in range(faces.shape[1])])
+    lines = np.concatenate([faces[:, [i - 1, i]] for i in range(faces.shape[1])])
+    if kind == "tet10":
+        ends, _ = np.unique(np.sort(lines, axis=1), axis=0, return_index=True)
+        keys = ends @ [len(unit), 1]
+
+        def middle(pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+            return np.asarray(len(unit) + np.searchsorted(keys, np.sort(pairs, axis=-1) @ [len(unit), 1]))
+
+        parts = np.hstack([parts, middle(parts[:, [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]])])
+        faces = np.hstack([faces, middle(faces[:, [[0, 1], [1, 2], [2, 0]]])])
+        lines = np.hstack([lines, middle(lines)[:, None]])
+        unit = np.vstack([unit, unit[ends].mean(axis=1)])
+    points = place(unit)
     own: dict[str, list[Any]] = {}
     members: dict[str, dict[str, Any]] = {}
     for group, test in groups.items():
         passed = test(points)
-        for form, sets in [("quad" if kind == "hex8" else "triangle", faces), ("line", edges)]:
+        for form, sets in zip(names, [faces, lines], strict=True):
             chosen = sets[passed[sets].all(axis=1)]
             _, first = np.unique(np.sort(chosen, axis=1), axis=0, return_index=True)
             if len(first):
@@ -83,9 +104,9 @@ def block(
     return sinew.Mesh(points, {name: parts, **{form: np.concatenate(sets) for form, sets in own.items()}}, members)
 
 
-def solid_scene(mesh: sinew.Mesh, kind: str, material: sinew.SolidMaterial, fixed: list[sinew.Held], **more: Any) -> sinew.Scene:
-    """One solid, `hex8`, `tet4` or `tet10`, in equilibrium under its loads."""
-    solid = sinew.Solid(mesh=mesh, order=2 if kind == "tet10" else 1, material=material, density=1000, fixed=fixed)
+def solid_scene(mesh: sinew.Mesh, material: sinew.SolidMaterial, fixed: list[sinew.Held], **more: Any) -> sinew.Scene:
+    """One solid in equilibrium under its loads."""
+    solid = sinew.Solid(mesh=mesh, material=material, density=1000, fixed=fixed)
     return sinew.Scene(**{"analysis": "static", "solids": {"solid": solid}, **more})
 
 

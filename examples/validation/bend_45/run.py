@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import ALL, RAMP, Array, Result, straight_rod
+from validation import ALL, RAMP, Array, Result, path_length, straight_rod
 
 import sinew
 
@@ -14,7 +14,7 @@ result = Result(__file__, "The 45 degree bend")
 values = result.reference("bend_45")
 angles = np.linspace(0.0, np.pi / 4, 201)
 ARC = np.stack([100 * np.sin(angles), 100 * (1 - np.cos(angles)), 0 * angles], axis=1)
-LENGTH = float(np.linalg.norm(np.diff(ARC, axis=0), axis=1).sum())
+LENGTH = path_length(ARC)
 
 
 def bent(force: float, sections: int, order: int = 0) -> tuple[Array, Array]:

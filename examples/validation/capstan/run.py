@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import EXTENSIBLE, Array, Result, block
+from validation import EXTENSIBLE, Array, Result, block, path_length
 
 import sinew
 
@@ -16,21 +16,22 @@ DRUM, ROPE, MU = 0.05, 1e-3, 0.3
 FORCE = 1.0
 
 
-def half_turn(radius: float, parts: int, begin: list[float], end: list[float], turned: list[int]) -> tuple[list[list[float]], float]:
-    """A path with half a turn in it, and its length."""
+def half_turn(radius: float, parts: int, begin: list[float], end: list[float], turned: list[int]) -> Array:
+    """A path with half a turn in it."""
     angles = np.linspace(0, np.pi, parts + 1)
     round_, axis = radius * np.array([-np.cos(angles), np.sin(angles)]), np.zeros((parts + 1, 3))
     axis[:, turned] = round_.T
     path = np.vstack([begin, axis, end])
-    return path.tolist(), float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    return path
 
 
 def drawn_over_drum(mu: float) -> float:
     """The force at the base that draws a rope with a weight at its end over half a drum."""
     axis = DRUM + ROPE
-    path, length = half_turn(axis, 30, [-axis, 0, -0.04], [axis, 0, -0.04], [0, 2])
+    path = half_turn(axis, 30, [-axis, 0, -0.04], [axis, 0, -0.04], [0, 2])
+    length = path_length(path)
     ends = np.concatenate([np.linspace(0, 0.04, 9), 0.04 + (length - 0.08) * np.arange(1, 31) / 30, length - 0.04 + np.linspace(0, 0.04, 9)[1:]])
-    rope = sinew.Rod(path=path, sections=ends.tolist(), section=sinew.Circle(radius=ROPE), rest="path", start="path", strains=EXTENSIBLE,  # type: ignore[arg-type]
+    rope = sinew.Rod(path=path.tolist(), sections=ends.tolist(), section=sinew.Circle(radius=ROPE), rest="path", start="path", strains=EXTENSIBLE,  # type: ignore[arg-type]
                      material=sinew.RodMaterial(young=3e7, poisson=0.4, density=1000, viscosity=300))
     scene = sinew.Scene(
         time=sinew.Time(step=0.005, duration=0.4), rods={"rope": rope}, contact=sinew.Contact(friction=mu),
@@ -44,15 +45,15 @@ def drawn_over_drum(mu: float) -> float:
 def drawn_through_channel(mu: float, pull: float) -> float:
     """The same through a channel with half a turn in a block; `pull` < 0 lets it go back."""
     straight, radius = 0.04, 0.02
-    path, length = half_turn(radius, 24, [-0.01, 0.01, 0.005], [-0.01, 0.05, 0.005], [1, 0])
-    shifted = np.array(path)
-    shifted[1:-1] += [0.03, 0.03, 0.005]
+    path = half_turn(radius, 24, [-0.01, 0.01, 0.005], [-0.01, 0.05, 0.005], [1, 0])
+    path[1:-1] += [0.03, 0.03, 0.005]
+    length = path_length(path)
     points = straight + (length - 2 * straight) * np.arange(25) / 24
     mesh = block((12, 12, 2), lambda x: x * [0.06, 0.06, 0.01], "tet4")
     scene = sinew.Scene(
         time=sinew.Time(step=0.01, duration=0.24),
         solids={"block": sinew.Solid(mesh=mesh, material=sinew.SolidMaterial(young=1e8, poisson=0.3), density=1000, fixed=sinew.Held(box=[[-1, -1, -1], [1, 1, 0.001]]))},
-        rods={"rod": sinew.Rod(path=shifted.tolist(), sections=112, section=sinew.Circle(radius=0.25e-3),
+        rods={"rod": sinew.Rod(path=path.tolist(), sections=112, section=sinew.Circle(radius=0.25e-3),
                                material=sinew.RodMaterial(young=1e7, poisson=0.4, density=1100, viscosity=100))},
         couplings=[sinew.Slide(rod="rod", solid="block", points=points.tolist(), anchor_tip="none", friction=mu)],
         actuators={"draw": sinew.Actuator(rod="rod", displacement=sinew.Table(times=[0.05, 0.25], values=[0, pull]))},

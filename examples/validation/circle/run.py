@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import ALL, RAMP, Result, stiffness, straight_rod
+from validation import ALL, RAMP, Result, path_length, stiffness, straight_rod
 
 import sinew
 
@@ -29,7 +29,7 @@ def unrolled(sections: int, by_path: bool, moment: float) -> tuple[sinew.State, 
     angles = np.linspace(0.0, 2.0 * np.pi, 401)
     path = np.stack([radius * np.sin(angles), radius * (1.0 - np.cos(angles)), 0 * angles], axis=1)
     shape = {"path": path.tolist()} if by_path else {"rest": sinew.StrainTable(bending_z=1.0 / radius)}
-    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) if by_path else 10.0
+    length = path_length(path) if by_path else 10.0
     scene = straight_rod(length, stiffness(100, 100, 100, 1200, 500, 500), sections, ALL, steps=8, **{"path": [[0, 0, 0], [10, 0, 0]], **shape})
     scene.loads["moment"] = sinew.RodLoad(rod="rod", moment=[0, 0, -moment], factor=RAMP)
     scene.outputs["turn"] = sinew.Output(rod="rod", at=length, quantity="orientation")

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import RAMP, Array, Result, stiffness, straight_rod
+from validation import RAMP, Array, Result, path_length, stiffness, straight_rod
 
 import sinew
 
@@ -15,7 +15,7 @@ values = result.reference("deep_arch_buckling")
 half = np.radians(215 / 2)
 angles = half * np.linspace(1.0, -1.0, 401)
 ARCH = np.stack([-100 * np.sin(angles), 100 * np.cos(angles), 0 * angles], axis=1)
-LENGTH = float(np.linalg.norm(np.diff(ARCH, axis=0), axis=1).sum())
+LENGTH = path_length(ARCH)
 
 
 def path_of(sections: int, order: int, strains: list[str]) -> tuple[Array, Array, list[sinew.State]]:

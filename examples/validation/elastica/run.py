@@ -49,7 +49,7 @@ def slender_block(alpha: float) -> Array:
     """w / L and u / L of a bar of 1 m x 10 mm x 10 mm, 60 x 1 x 1 boxes of six 10-node tetrahedra."""
     h, E = 0.01, 1e9
     mesh = block((60, 1, 1), lambda x: x * [1.0, h, h], "tet10")
-    scene = solid_scene(mesh, "tet10", sinew.SolidMaterial(law="saint_venant_kirchhoff", young=E, poisson=0),
+    scene = solid_scene(mesh, sinew.SolidMaterial(law="saint_venant_kirchhoff", young=E, poisson=0),
                         [sinew.Held(plane=sinew.Plane(point=[0, 0, 0], normal=[1, 0, 0]))])
     end = sinew.Plane(point=[1, 0, 0], normal=[1, 0, 0])
     scene.loads["force"] = sinew.SolidLoad(solid="solid", plane=end, force=[0, alpha * E * h**4 / 12, 0])

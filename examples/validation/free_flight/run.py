@@ -46,12 +46,12 @@ result.check("box, step of 1 ms: drift of the angular momentum", drifts[2], most
 result.check("drift falls with the step to the power", float(np.log2(drifts[1] / drifts[2])), least=0.8)
 
 # A rod that nothing holds is pushed and turned at its end for 0.1 s.
-L, PUSH, STEP = 0.3, np.array([0.2, -0.1, 0.3]), 2e-3
-scene = straight_rod(L, sinew.Circle(radius=0.01), 6, base="free", material=sinew.RodMaterial(young=5e7, poisson=0.4, density=1200))
+L, R, PUSH, STEP = 0.3, 3e-3, np.array([0.1, -0.05, 0.15]), 2e-3
+scene = straight_rod(L, sinew.Circle(radius=R), 6, base="free", material=sinew.RodMaterial(young=5e7, poisson=0.4, density=1200))
 scene.analysis, scene.time, scene.gravity = "dynamic", sinew.Time(step=STEP, duration=0.4), [0, 0, -G]
 scene.loads["push"] = sinew.RodLoad(rod="rod", force=PUSH.tolist(), factor=sinew.Table(times=[0, 0.05, 0.1], values=[0, 1, 0]))
 run = sinew.simulate(scene, progress=False)
-mass = 1200 * np.pi * 0.01**2 * L
+mass = 1200 * np.pi * R**2 * L
 height = run.signals["energy.weight"] / (mass * G)  # of its centre
 speed = np.diff(height) / STEP
 given = np.cumsum(STEP * (PUSH[2] * np.interp(run.time[1:], [0, 0.05, 0.1], [0, 1, 0]) - mass * G))

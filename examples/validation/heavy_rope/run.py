@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import EXTENSIBLE, Array, Result
+from validation import EXTENSIBLE, Array, Result, path_length
 
 import sinew
 
@@ -23,7 +23,7 @@ def hung(part: float) -> tuple[Array, Array]:
     right = part * CRITICAL
     angles = np.linspace(0, np.pi, 31)
     path = np.vstack([[-AXIS, 0, -LEFT], np.stack([-AXIS * np.cos(angles), 0 * angles, AXIS * np.sin(angles)], axis=1), [AXIS, 0, -right]])
-    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    length = path_length(path)
     arc = length - LEFT - right
     ends = np.concatenate([np.linspace(0, LEFT, 9), LEFT + arc * np.arange(1, 31) / 30, LEFT + arc + right * np.arange(1, 9) / 8])
     rope = sinew.Rod(path=path.tolist(), sections=ends.tolist(), section=sinew.Circle(radius=ROPE), rest="path", start="path", base="free",

@@ -6,8 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from dossier import ROOT
-from validation import EXTENSIBLE, Array, Result
+from validation import EXTENSIBLE, ROOT, Array, Result
 
 import sinew
 
@@ -60,9 +59,10 @@ direct, seeking = model.initial_state(), model.initial_state()
 for k in range(1, 41):
     a = 2 * np.pi * k / 40
     forces = np.array([1.5 + np.sin(a), 1.2 + 0.8 * np.cos(a), 1.0 - 0.7 * np.sin(2 * a)]) * min(1.0, k / 8)
-    for state, command, targets in [(direct, forces.tolist(), None), (seeking, None, {"tip": direct.output("tip")})]:
-        report = sinew.step(model, command, state, targets=targets)
-        assert report.accepted, report.meaning
+    report = sinew.step(model, forces.tolist(), direct)
+    assert report.accepted, report.meaning
+    report = sinew.step(model, None, seeking, targets={"tip": direct.output("tip")})
+    assert report.accepted, report.meaning
     told.append(forces)
     found.append(seeking.forces)
     off.append(float(np.linalg.norm(seeking.output("tip") - direct.output("tip"))))

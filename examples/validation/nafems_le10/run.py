@@ -34,10 +34,10 @@ def stress(kind: str, nr: int, na: int, nz: int) -> float:
     plane = {axis: sinew.Plane(point=[0, 0, 0], normal=normal) for axis, normal in [("x", [1, 0, 0]), ("y", [0, 1, 0])]}
     held = [sinew.Held(plane=plane["y"], axes=["y"]), sinew.Held(plane=plane["x"], axes=["x"]),
             sinew.Held(group="rim", axes=["x", "y"]), sinew.Held(group="middle", axes=["z"])]
-    scene = solid_scene(mesh, kind, sinew.SolidMaterial(law="saint_venant_kirchhoff", young="210 GPa", poisson=0.3), held)
+    scene = solid_scene(mesh, sinew.SolidMaterial(law="saint_venant_kirchhoff", young="210 GPa", poisson=0.3), held)
     scene.loads["pressure"] = sinew.SolidLoad(solid="solid", plane=sinew.Plane(point=[0, 0, 0.6], normal=[0, 0, 1]), pressure="1 MPa")
-    scene.outputs["D"] = sinew.Output(solid="solid", point=[2, 0, 0.6], quantity="stress")
-    return float(sinew.simulate(scene, progress=False).state().output("D")[1])
+    scene.outputs["stress"] = sinew.Output(solid="solid", point=[2, 0, 0.6], quantity="stress")
+    return float(sinew.simulate(scene, progress=False).state().output("stress")[1])
 
 
 meshes = [("tet10", 3, 6, 4), ("tet10", 5, 8, 6), ("tet10", 8, 12, 8)]

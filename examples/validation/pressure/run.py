@@ -35,7 +35,7 @@ def elastica(steps: int) -> Array:
 
 def bent(kind: str, cells: tuple[int, int, int]) -> tuple[Array, Array]:
     mesh = block(cells, lambda x: x * [L, H, H], kind)
-    scene = solid_scene(mesh, kind, sinew.SolidMaterial(law="saint_venant_kirchhoff", young=E, poisson=0),
+    scene = solid_scene(mesh, sinew.SolidMaterial(law="saint_venant_kirchhoff", young=E, poisson=0),
                         [sinew.Held(plane=sinew.Plane(point=[0, 0, 0], normal=[1, 0, 0]))])
     scene.loads["pressure"] = sinew.SolidLoad(solid="solid", plane=sinew.Plane(point=[0, H, 0], normal=[0, 1, 0]), pressure=P)
     for k, s in enumerate(np.linspace(0, L, 21)):
