@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,12 +15,17 @@ import sinew
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from dossier import ROOT, Result  # noqa: E402
 
-__all__ = ["ALL", "BENDING", "EXTENSIBLE", "RAMP", "ROOT", "Array", "Result", "block", "path_length", "shoot", "solid_scene", "stiffness", "straight_rod"]
+__all__ = [
+    "ALL", "Array", "Axis", "BENDING", "EXTENSIBLE", "Groups", "RAMP", "ROOT", "Result", "Strains",
+    "across", "block", "path_length", "shoot", "solid_scene", "stiffness", "straight_rod", "wall",
+]
 
 Array = npt.NDArray[np.float64]
-BENDING = ["torsion", "bending_y", "bending_z"]
-EXTENSIBLE = [*BENDING, "elongation"]
-ALL = [*EXTENSIBLE, "shear_y", "shear_z"]
+Axis = Literal["x", "y", "z"]
+Strains = list[Literal["torsion", "bending_y", "bending_z", "elongation", "shear_y", "shear_z"]]
+BENDING: Strains = ["torsion", "bending_y", "bending_z"]
+EXTENSIBLE: Strains = [*BENDING, "elongation"]
+ALL: Strains = [*EXTENSIBLE, "shear_y", "shear_z"]
 RAMP = sinew.Table(times=[0, 1], values=[0, 1])
 """Loads grow from nothing to their value at t = 1."""
 
@@ -30,7 +35,7 @@ def stiffness(*six: float) -> sinew.StiffnessSection:
     return sinew.StiffnessSection(matrix=list(six), line_density=0, radius="10 mm")
 
 
-def straight_rod(length: float, section: Any, sections: int = 1, strains: Any = None, order: int = 0, steps: int = 1, **more: Any) -> sinew.Scene:
+def straight_rod(length: float, section: Any, sections: int = 1, strains: Strains | None = None, order: int = 0, steps: int = 1, **more: Any) -> sinew.Scene:
     """A rod clamped at the origin, straight along x, its cross-section's axes y and z those of the world; in equilibrium
     at `steps` times up to 1. The output `tip` is its end."""
     rod = sinew.Rod(
@@ -50,6 +55,16 @@ def straight_rod(length: float, section: Any, sections: int = 1, strains: Any = 
         rods={"rod": rod},
         outputs={"tip": sinew.Output(rod="rod", at=length)},
     )
+
+
+def across(axis: Axis, at: float = 0.0) -> sinew.Plane:
+    """The plane where this coordinate is `at`."""
+    return sinew.Plane(point=[at * (axis == own) for own in "xyz"], normal=[float(axis == own) for own in "xyz"])
+
+
+def wall(axis: Axis, at: float = 0.0) -> sinew.Held:
+    """A smooth wall there: its nodes are held along that axis alone."""
+    return sinew.Held(plane=across(axis, at), axes=[axis])
 
 
 def path_length(path: Array) -> float:

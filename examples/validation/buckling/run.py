@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from collections.abc import Callable
 
 import numpy as np
-from validation import ALL, BENDING, RAMP, Result, stiffness, straight_rod
+from validation import ALL, BENDING, RAMP, Axis, Result, Strains, stiffness, straight_rod
 
 import sinew
 
@@ -16,7 +16,7 @@ L, EI = 1.5, 2.0
 TINY = 1e-6 * EI / L**2
 
 
-def column(load: float, pinned: bool, strains: list[str]) -> float:
+def column(load: float, pinned: bool, strains: Strains) -> float:
     """How far a tiny force across moves a column under an axial load."""
     scene = straight_rod(L, stiffness(1.5, EI, EI, 1e7, 1e7, 1e7), 24, strains, steps=4)
     place = L / 2 if pinned else L
@@ -33,8 +33,8 @@ def shaft(load: float, ends: str) -> float:
     """The same of a shaft under end moments of fixed direction."""
     scene = straight_rod(L, stiffness(40 * EI, EI, EI, 1e7, 1e7, 1e7), 32, ALL, steps=4)
     scene.loads["across"] = sinew.RodLoad(rod="rod", at=L / 2, force=[0, TINY, 0], factor=RAMP)
-    about = {"pins": ["x"], "clamps": ["x", "y", "z"], "joint": None}[ends]
-    scene.couplings.append(sinew.Tie(rod="rod", along=["y", "z"], about=about))
+    held: dict[str, list[Axis] | None] = {"pins": ["x"], "clamps": ["x", "y", "z"], "joint": None}
+    scene.couplings.append(sinew.Tie(rod="rod", along=["y", "z"], about=held[ends]))
     if ends == "clamps":
         scene.actuators["turn"] = sinew.Actuator(rod="rod", angle=sinew.Table(times=[0, 1], values=[0, load * L / (40 * EI)]))
     else:

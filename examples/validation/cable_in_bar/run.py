@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Array, Result, block
+from validation import Array, Result, across, block
 
 import sinew
 
@@ -26,7 +26,7 @@ def pulled(kind: str, cells: tuple[int, int, int], points: int, geometric: bool 
     scene = sinew.Scene(
         analysis="quasi_static", time=sinew.Time(step=0.25, duration=1),
         solids={"bar": sinew.Solid(mesh=mesh, density=1000, material=sinew.SolidMaterial(law="saint_venant_kirchhoff", young=E, poisson=0),
-                                   fixed=sinew.Held(plane=sinew.Plane(point=[0, 0, 0], normal=[1, 0, 0])))},
+                                   fixed=sinew.Held(plane=across("x")))},
         rods={"cable": cable}, couplings=[sinew.Slide(rod="cable", solid="bar", points=where.tolist(), anchor_tip="position")],
         actuators={"pull": sinew.Actuator(rod="cable", force=sinew.Table(times=[0, 1], values=[0, T]))},
     )
@@ -57,7 +57,7 @@ for name, kind, cells, points, geometric in [
     ("10-node tetrahedra, geometric cable", "tet10", (20, 2, 2), 20, True),
     ("10-node tetrahedra, points off the mesh's planes", "tet10", (14, 2, 2), 23, False),
 ]:
-    axis, beside, lost = pulled(kind, cells, points, geometric)  # type: ignore[arg-type]
+    axis, beside, lost = pulled(kind, cells, points, geometric)
     kappa, shorter = bending(axis, beside)
     rows.append([name, f"{kappa:.4f}", f"{1e3 * shorter:.4f}", "" if geometric else f"{1e3 * lost:.4f}"])
     axes.plot(1e3 * axis[:, 0], 1e3 * axis[:, 2], "o", ms=4, label=name)

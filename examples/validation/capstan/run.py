@@ -31,7 +31,7 @@ def drawn_over_drum(mu: float) -> float:
     path = half_turn(axis, 30, [-axis, 0, -0.04], [axis, 0, -0.04], [0, 2])
     length = path_length(path)
     ends = np.concatenate([np.linspace(0, 0.04, 9), 0.04 + (length - 0.08) * np.arange(1, 31) / 30, length - 0.04 + np.linspace(0, 0.04, 9)[1:]])
-    rope = sinew.Rod(path=path.tolist(), sections=ends.tolist(), section=sinew.Circle(radius=ROPE), rest="path", start="path", strains=EXTENSIBLE,  # type: ignore[arg-type]
+    rope = sinew.Rod(path=path.tolist(), sections=ends.tolist(), section=sinew.Circle(radius=ROPE), rest="path", start="path", strains=EXTENSIBLE,
                      material=sinew.RodMaterial(young=3e7, poisson=0.4, density=1000, viscosity=300))
     scene = sinew.Scene(
         time=sinew.Time(step=0.005, duration=0.4), rods={"rope": rope}, contact=sinew.Contact(friction=mu),

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import ALL, BENDING, RAMP, Array, Result, shoot, stiffness, straight_rod
+from validation import ALL, BENDING, RAMP, Array, Result, Strains, shoot, stiffness, straight_rod
 
 import sinew
 
@@ -15,7 +15,7 @@ SIX = np.array([0.8, 1.0, 1.5, 60.0, 25.0, 30.0])
 FORCE = np.array([-0.6, 1.2, 0.9])
 
 
-def tip(strains: list[str], order: int, sections: int) -> Array:
+def tip(strains: Strains, order: int, sections: int) -> Array:
     scene = straight_rod(1.0, stiffness(*SIX), sections, strains, order, steps=2)
     scene.newton = sinew.Newton(tolerance=1e-13)
     scene.loads["force"] = sinew.RodLoad(rod="rod", force=FORCE.tolist(), factor=RAMP)

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Result, block, solid_scene
+from validation import Result, across, block, solid_scene, wall
 
 import sinew
 
@@ -17,10 +17,9 @@ LOAD = 1e-4  # so little that all is linear
 
 def lifted(kind: str, n: int) -> float:
     mesh = block((n, n, 1), lambda x: np.stack([48 * x[:, 0], 44 * x[:, 0] + x[:, 1] * (44 - 28 * x[:, 0]), x[:, 2]], axis=1), kind)
-    left, back, right = (sinew.Plane(point=p, normal=m) for p, m in [([0, 0, 0], [1, 0, 0]), ([0, 0, 0], [0, 0, 1]), ([48, 0, 0], [1, 0, 0])])
     scene = solid_scene(mesh, sinew.SolidMaterial(law="saint_venant_kirchhoff", young=1, poisson=1 / 3),
-                        [sinew.Held(plane=left, axes=["x", "y"]), sinew.Held(plane=back, axes=["z"])])
-    scene.loads["shear"] = sinew.SolidLoad(solid="solid", plane=right, force=[0, LOAD, 0])
+                        [sinew.Held(plane=across("x"), axes=["x", "y"]), wall("z")])
+    scene.loads["shear"] = sinew.SolidLoad(solid="solid", plane=across("x", 48), force=[0, LOAD, 0])
     scene.outputs["corner"] = sinew.Output(solid="solid", point=[48, 52, 0.5], quantity="displacement")
     return float(sinew.simulate(scene, progress=False).state().output("corner")[1]) / LOAD
 

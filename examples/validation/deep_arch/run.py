@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import RAMP, Array, Result, path_length, stiffness, straight_rod
+from validation import RAMP, Array, Result, Strains, path_length, stiffness, straight_rod
 
 import sinew
 
@@ -18,7 +18,7 @@ ARCH = np.stack([-100 * np.sin(angles), 100 * np.cos(angles), 0 * angles], axis=
 LENGTH = path_length(ARCH)
 
 
-def path_of(sections: int, order: int, strains: list[str]) -> tuple[Array, Array, list[sinew.State]]:
+def path_of(sections: int, order: int, strains: Strains) -> tuple[Array, Array, list[sinew.State]]:
     """Loads and how far the apex goes down along the path of equilibria, until the load has fallen for a while."""
     scene = straight_rod(LENGTH, stiffness(1e6, 1e6, 1e6, 1e9, 1e9, 1e9), sections, strains, order, path=ARCH.tolist(), up=[0, 0, 1])
     scene.analysis = "static"
@@ -39,11 +39,12 @@ def path_of(sections: int, order: int, strains: list[str]) -> tuple[Array, Array
 
 
 found = {}
-for name, own in {
+cuts: dict[str, tuple[int, int, Strains]] = {
     "40 sections, constant strain": (40, 0, ["bending_y"]),
     "10 sections, quadratic strain": (10, 2, ["bending_y"]),
     "40 sections that also stretch and shear": (40, 0, ["bending_y", "elongation", "shear_z"]),
-}.items():
+}
+for name, own in cuts.items():
     loads, down, states = path_of(*own)
     found[name] = float(loads.max())
 figure, (way, shape) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import RAMP, Array, Result, block, solid_scene, stiffness, straight_rod
+from validation import RAMP, Array, Result, across, block, solid_scene, stiffness, straight_rod
 
 import sinew
 
@@ -50,9 +50,8 @@ def slender_block(alpha: float) -> Array:
     h, E = 0.01, 1e9
     mesh = block((60, 1, 1), lambda x: x * [1.0, h, h], "tet10")
     scene = solid_scene(mesh, sinew.SolidMaterial(law="saint_venant_kirchhoff", young=E, poisson=0),
-                        [sinew.Held(plane=sinew.Plane(point=[0, 0, 0], normal=[1, 0, 0]))])
-    end = sinew.Plane(point=[1, 0, 0], normal=[1, 0, 0])
-    scene.loads["force"] = sinew.SolidLoad(solid="solid", plane=end, force=[0, alpha * E * h**4 / 12, 0])
+                        [sinew.Held(plane=across("x"))])
+    scene.loads["force"] = sinew.SolidLoad(solid="solid", plane=across("x", 1), force=[0, alpha * E * h**4 / 12, 0])
     scene.outputs["tip"] = sinew.Output(solid="solid", point=[1, 0.5 * h, 0.5 * h], quantity="displacement")
     x, y, _ = sinew.simulate(scene, progress=False).state().output("tip")
     return np.array([y, -x])

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import ALL, BENDING, Result, path_length, stiffness, straight_rod
+from validation import ALL, BENDING, Result, Strains, path_length, stiffness, straight_rod
 
 import sinew
 
@@ -14,7 +14,7 @@ result = Result(__file__, "What becomes of energy")
 L, R, AMPLITUDE = 0.5, 0.005, 0.01
 
 
-def released(step: float, viscosity: float = 0.0, strains: list[str] | None = None, gravity: list[float] | None = None) -> sinew.Run:
+def released(step: float, viscosity: float = 0.0, strains: Strains | None = None, gravity: list[float] | None = None) -> sinew.Run:
     """A rod that is straight at rest is let go from the shape of its first mode."""
     x = 1.87510407 * np.linspace(0, 1, 41)
     y = np.cosh(x) - np.cos(x) - 0.73409551 * (np.sinh(x) - np.sin(x))
@@ -41,7 +41,7 @@ result.check("undamped: energy becomes motion, kinetic over total, largest", swu
 result.check("undamped: what a longer step takes more falls with the step to the power", float(np.log2((lost[0] - lost[1]) / (lost[1] - lost[2]))), 0.85, 1.15)
 for viscosity in (0.0, 3e3, 1e5):
     run = released(2e-3, viscosity, ALL, [1.0, -9.81, 2.0])
-    total = sum(run.signals[f"energy.{part}"] for part in ("kinetic", "elastic", "weight"))
+    total = run.signals["energy.kinetic"] + run.signals["energy.elastic"] + run.signals["energy.weight"]
     result.check(f"viscosity {viscosity:g} Pa s, all strains, gravity: most energy that any step gains, over the first", float(np.diff(total).max() / abs(total[0])), most=1e-9)
 
 # At rest, under a growing force: its work is what is stored.

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Array, Result, block
+from validation import Array, Result, Strains, across, block, wall
 
 import sinew
 
@@ -15,7 +15,7 @@ L, R, E, RHO = 1.0, 2e-3, 2e9, 1200.0
 EI, LINE = E * np.pi * R**4 / 4, RHO * np.pi * R**2
 
 
-def rod(sections: int, order: int, strains: list[str], **more: object) -> sinew.Scene:
+def rod(sections: int, order: int, strains: Strains, **more: object) -> sinew.Scene:
     own = sinew.Rod(path=[[0, 0, 0], [L, 0, 0]], sections=sections, strains=strains, order=order, section=sinew.Circle(radius=R),
                     material=sinew.RodMaterial(young=E, poisson=0.3, density=RHO), **more)  # type: ignore[arg-type]
     return sinew.Scene(analysis="modal", modes=3, rods={"rod": own}, outputs={"tip": sinew.Output(rod="rod", at=L)})
@@ -40,8 +40,9 @@ for sections, order in [(24, 0), (2, 3)]:
     rows.append([f"bending, {sections} sections of order {order}", *[f"{f:.4f}" for f in own]])
     result.compare_all(f"cantilever, {sections} sections of order {order}: bending", own, bending, 1e-2, "Hz", "Euler and Bernoulli: cos x cosh x = -1")
 rows.append(["Euler and Bernoulli", *[f"{f:.4f}" for f in bending]])
-for strain, speed in zip(["elongation", "torsion"], wave, strict=True):
-    own = modes(rod(6, 2, [strain]))
+strained: list[tuple[str, Strains, float]] = [("elongation", ["elongation"], wave[0]), ("torsion", ["torsion"], wave[1])]
+for strain, strains, speed in strained:
+    own = modes(rod(6, 2, strains))
     result.compare_all(f"cantilever, 6 sections of order 2: {strain}", own, odd * speed / (4 * L), 1e-2, "Hz", "waves of a bar: odd multiples of c / (4 L)")
     rows += [[strain, *[f"{f:.2f}" for f in own]], ["waves", *[f"{f:.2f}" for f in odd * speed / (4 * L)]]]
 result.table(["cantilever of 1 m", "mode 1 [Hz]", "mode 2", "mode 3"], rows)
@@ -59,10 +60,8 @@ result.compare_all("taut rod on pins, T L^2 / (pi^2 E I) from 0 to 1000", found,
 
 # A bar of the volume's elements, along which alone it may move.
 mesh = block((24, 1, 1), lambda x: x * [1.0, 0.05, 0.05], "hex8")
-across = [sinew.Held(plane=sinew.Plane(point=p, normal=m), axes=[a]) for p, m, a in
-          [([0, 0, 0], [0, 1, 0], "y"), ([0, 0.05, 0], [0, 1, 0], "y"), ([0, 0, 0], [0, 0, 1], "z"), ([0, 0, 0.05], [0, 0, 1], "z")]]
 solid = sinew.Solid(mesh=mesh, material=sinew.SolidMaterial(law="corotational", young=E, poisson=0), density=RHO,
-                    fixed=[sinew.Held(plane=sinew.Plane(point=[0, 0, 0], normal=[1, 0, 0])), *across])
+                    fixed=[sinew.Held(plane=across("x")), wall("y"), wall("y", 0.05), wall("z"), wall("z", 0.05)])
 own = modes(sinew.Scene(analysis="modal", modes=3, solids={"bar": solid}))
 result.compare_all("bar of 24 hexahedra: along it", own, odd * wave[0] / (4 * L), 1e-2, "Hz", "waves of a bar: odd multiples of c / (4 L)")
 

@@ -27,7 +27,7 @@ def hung(part: float) -> tuple[Array, Array]:
     arc = length - LEFT - right
     ends = np.concatenate([np.linspace(0, LEFT, 9), LEFT + arc * np.arange(1, 31) / 30, LEFT + arc + right * np.arange(1, 9) / 8])
     rope = sinew.Rod(path=path.tolist(), sections=ends.tolist(), section=sinew.Circle(radius=ROPE), rest="path", start="path", base="free",
-                     strains=EXTENSIBLE, material=sinew.RodMaterial(young=3e5, poisson=0.5, density=RHO, viscosity=10))  # type: ignore[arg-type]
+                     strains=EXTENSIBLE, material=sinew.RodMaterial(young=3e5, poisson=0.5, density=RHO, viscosity=10))
     scene = sinew.Scene(
         time=sinew.Time(step=0.005, duration=0.8 if part < 1 else 0.5), gravity=[0, 0, -G], rods={"rope": rope}, contact=sinew.Contact(friction=MU),
         obstacles={"drum": sinew.Obstacle(cylinder=sinew.CylinderShape(radius=DRUM, length=0.1), pose=sinew.Pose(rotate=[np.pi / 2, 0, 0]))},

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Array, Result, block
+from validation import Array, Result, block, wall
 
 import sinew
 
@@ -30,7 +30,7 @@ def place(x: Array) -> Array:
 box = [[-1, -1, FAR - 1e-6], [1, 1, 1]]
 solid = sinew.Solid(
     mesh=block((FINE + COARSE,) * 3, place), material=sinew.SolidMaterial(law="corotational", young=YOUNG, poisson=NU), density=1000,
-    fixed=[sinew.Held(box=box), *[sinew.Held(plane=sinew.Plane(point=[0, 0, 0], normal=[float(a == b) for b in "xyz"]), axes=[a]) for a in "xy"]],  # type: ignore[list-item]
+    fixed=[sinew.Held(box=box), wall("x"), wall("y")],
 )
 scene = sinew.Scene(
     time=sinew.Time(step=1000, duration=4000), solids={"block": solid}, contact=sinew.Contact(friction=0),

@@ -13,7 +13,7 @@ import sinew
 result = Result(__file__, "Jacobians and the inverse problem")
 
 # A rod with three tendons.
-rod = sinew.Rod(path=[[0, 0, 0], [0, 0, 0.2]], sections=4, order=1, strains=EXTENSIBLE, section=sinew.Circle(radius="8 mm"),  # type: ignore[arg-type]
+rod = sinew.Rod(path=[[0, 0, 0], [0, 0, 0.2]], sections=4, order=1, strains=EXTENSIBLE, section=sinew.Circle(radius="8 mm"),
                 material=sinew.RodMaterial(young="0.5 MPa", poisson=0.45, density=1100))
 arm = sinew.Scene(
     analysis="quasi_static", time=sinew.Time(step="10 ms", duration=1), gravity=[9.81, 0, 0], rods={"arm": rod}, newton=sinew.Newton(tolerance=1e-12),
@@ -38,7 +38,7 @@ def by_differences(model: sinew.Model, forces: Array, state: sinew.State, h: flo
     for k in range(len(forces)):
         d = h * np.eye(len(forces))[k]
         columns.append((rest(model, forces + d, state).output("tip") - rest(model, forces - d, state).output("tip")) / (2 * h))
-    return np.array(columns).T
+    return np.asarray(np.array(columns).T)
 
 
 for name, model, forces in [

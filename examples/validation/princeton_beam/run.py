@@ -26,7 +26,7 @@ def moved(beta: float, section: object, sections: int, order: int) -> Array:
 
 
 def weight(beta: float) -> Array:
-    return of["F"] * np.array([0.0, np.cos(np.radians(beta)), np.sin(np.radians(beta))])
+    return np.asarray(of["F"] * np.array([0.0, np.cos(np.radians(beta)), np.sin(np.radians(beta))]))
 
 
 angles = values["beta_deg"]

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Array, Result, block
+from validation import Array, Result, across, block
 
 import sinew
 
@@ -47,23 +47,23 @@ def ogden(l: Array) -> float:
 def exact(energy: Callable[[Array], float], along: float) -> tuple[float, float]:
     """Nominal stress along the pull and the stretch across it, where the sides carry nothing."""
     h = 1e-5
-    across = 1.0
+    side = 1.0
     for _ in range(100):
         def slope(x: float) -> float:
             return (energy(np.array([along, x + h, x + h])) - energy(np.array([along, x - h, x - h]))) / (2 * h)
 
-        change = slope(across) * 2 * h / (slope(across + h) - slope(across - h))
-        across -= float(np.clip(change, -0.1, 0.1))
+        change = slope(side) * 2 * h / (slope(side + h) - slope(side - h))
+        side -= float(np.clip(change, -0.1, 0.1))
         if abs(change) < 1e-9:
             break
-    return (energy(np.array([along + h, across, across])) - energy(np.array([along - h, across, across]))) / (2 * h), across
+    return (energy(np.array([along + h, side, side])) - energy(np.array([along - h, side, side]))) / (2 * h), side
 
 
 def pulled(kind: str, material: sinew.SolidMaterial, along: float) -> tuple[list[float], list[float], list[float]]:
     """Stretches along, nominal stresses and stretches across of a unit cube, in steps up to `along`."""
     # Along y and z all but the far end: no node may be held by two frames.
     held = [sinew.Held(box=[[-0.1, -0.1, -0.1], [0.9 * (a != "x"), 1 - (a == "y"), 1 - (a == "z")]], axes=[a]) for a in "xyz"]  # type: ignore[list-item]
-    far = sinew.Plane(point=[1, 0, 0], normal=[1, 0, 0])
+    far = across("x", 1)
     solid = sinew.Solid(mesh=block((2, 2, 2), lambda x: x, kind), material=material, density=1000,
                         fixed=[*held, sinew.Held(plane=far, axes=["x"], frame="grip")])
     scene = sinew.Scene(
@@ -85,15 +85,17 @@ laws: dict[str, tuple[Callable[[Array], float], sinew.SolidMaterial]] = {
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
 for number, (name, (energy, material)) in enumerate(laws.items()):
     ends = [0.8, 1.5] if name in ("corotational", "saint_venant_kirchhoff") else [0.5, 2.5]
-    stresses, sides, right = [], [], []
+    stresses: list[float] = []
+    sides: list[float] = []
+    right: list[tuple[float, float]] = []
     for kind in ("hex8", "tet10"):
         for end in ends:
-            along, stress, across = pulled(kind, material, end)
+            along, stress, side = pulled(kind, material, end)
             right += [exact(energy, x) for x in along]
             stresses += stress
-            sides += across
+            sides += side
             axes.plot(along[::3], 1e-3 * np.array(stress[::3]), f"oC{number}", ms=4)
-    fine = np.linspace(*ends, 60)
+    fine = np.linspace(ends[0], ends[1], 60)
     axes.plot(fine, [1e-3 * exact(energy, x)[0] for x in fine], f"C{number}", label=name)
     result.compare_all(f"{name}, stretched by {ends[0]} to {ends[1]}, hex8 and tet10: nominal stress", stresses, [own[0] for own in right], 1e-5, "Pa", "the law's energy, differentiated")
     result.compare_all(f"{name}: stretch across", sides, [own[1] for own in right], 1e-6, source="the law's energy, sides free of stress")

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import EXTENSIBLE, Result, stiffness, straight_rod
+from validation import EXTENSIBLE, Result, Strains, stiffness, straight_rod
 
 import sinew
 
@@ -16,7 +16,7 @@ L, EI, r, T = 0.4, 0.02, 6e-3, 4.0
 kappa = T * r / EI
 
 
-def pulled(sections: int, angle: float, strains: list[str] | None = None, **drive: float) -> sinew.State:
+def pulled(sections: int, angle: float, strains: Strains | None = None, **drive: float) -> sinew.State:
     scene = straight_rod(L, stiffness(0.015, EI, EI, 800, 1, 1), sections, strains, steps=4)
     (what, value), = drive.items()
     scene.actuators["tendon"] = sinew.Actuator(rod="rod", tendon=sinew.Tendon(distance=r, angle=angle),

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Array, Result, block, solid_scene
+from validation import Array, Result, block, solid_scene, wall
 
 import sinew
 
@@ -27,9 +27,8 @@ def solved(kind: str, n: int, nu: float) -> tuple[float, float]:
         return np.stack([r * np.cos(angle), r * np.sin(angle), x[:, 2] / n], axis=1)
 
     mesh = block((n, n, 1), place, kind, {"inside": lambda x: np.hypot(x[:, 0], x[:, 1]) < A + 1e-9})
-    held = [sinew.Held(plane=sinew.Plane(point=p, normal=m), axes=[a]) for p, m, a in
-            [([0, 0, 0], [1, 0, 0], "x"), ([0, 0, 0], [0, 1, 0], "y"), ([0, 0, 0], [0, 0, 1], "z"), ([0, 0, 1 / n], [0, 0, 1], "z")]]
-    scene = solid_scene(mesh, sinew.SolidMaterial(law="neo_hookean", young=YOUNG, poisson=nu), held)
+    scene = solid_scene(mesh, sinew.SolidMaterial(law="neo_hookean", young=YOUNG, poisson=nu),
+                        [wall("x"), wall("y"), wall("z"), wall("z", 1 / n)])
     scene.loads["pressure"] = sinew.SolidLoad(solid="solid", group="inside", pressure=P)
     middle = np.array([1.5 * np.cos(0.7), 1.5 * np.sin(0.7), 0.5 / n])
     scene.outputs["stress"] = sinew.Output(solid="solid", point=middle.tolist(), quantity="stress")

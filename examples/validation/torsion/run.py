@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
 import numpy as np
-from validation import Result, block, straight_rod
+from validation import Result, across, block, straight_rod
 
 import sinew
 
@@ -34,7 +34,7 @@ def bar(kind: str, n: int, a: float, b: float) -> float:
     """The same of a bar of solid elements between ends that turn as a whole across and are free along it."""
     length, angle = 4 * a, 1e-3
     mesh = block((4, round(n * a / b), n), lambda x: (x - [0, 0.5, 0.5]) * [length, a, b], kind)
-    ends = [sinew.Held(plane=sinew.Plane(point=[x, 0, 0], normal=[1, 0, 0]), axes=["y", "z"], frame=frame) for x, frame in [(0.0, "still"), (length, "hand")]]
+    ends = [sinew.Held(plane=across("x", x), axes=["y", "z"], frame=frame) for x, frame in [(0.0, "still"), (length, "hand")]]
     edge = sinew.Held(nodes=[int(np.argmin(np.linalg.norm(mesh.points - [length / 2, 0, 0], axis=1)))], axes=["x"])
     solid = sinew.Solid(mesh=mesh, density=1000, fixed=[*ends, edge],
                         material=sinew.SolidMaterial(law="saint_venant_kirchhoff", young=YOUNG, poisson=NU))
@@ -61,15 +61,15 @@ found: dict[str, list[float]] = {"hex8": [], "tet10": []}
 cells = {"hex8": [4, 8, 16], "tet10": [2, 4, 8]}
 a, b = 0.02, 0.01
 exact_bar = rectangle(a, b)
-for kind, own in found.items():
+for kind, finer in found.items():
     for n in cells[kind]:
-        own.append(bar(kind, n, a, b))
-        rows.append([f"bar of {kind}, {2 * n} x {n} cells across", f"{own[-1]:.6e}", f"{exact_bar:.6e}", f"{100 * (own[-1] / exact_bar - 1):+.3f} %"])
-    result.compare(f"bar 2 : 1 of {kind}, finest: torsion constant", own[-1], exact_bar, 1e-2, "m4", "Saint-Venant's series")
+        finer.append(bar(kind, n, a, b))
+        rows.append([f"bar of {kind}, {2 * n} x {n} cells across", f"{finer[-1]:.6e}", f"{exact_bar:.6e}", f"{100 * (finer[-1] / exact_bar - 1):+.3f} %"])
+    result.compare(f"bar 2 : 1 of {kind}, finest: torsion constant", finer[-1], exact_bar, 1e-2, "m4", "Saint-Venant's series")
 result.table(["", "torsion constant [m4]", "Saint-Venant", "off"], rows)
 figure, axes = plt.subplots(figsize=(5, 3.5), layout="constrained")
-for kind, own in found.items():
-    axes.loglog(cells[kind], np.abs(np.array(own) / exact_bar - 1), "o-", label=kind)
+for kind, finer in found.items():
+    axes.loglog(cells[kind], np.abs(np.array(finer) / exact_bar - 1), "o-", label=kind)
 axes.set(xlabel="cells through the height", ylabel="error of the torsion constant")
 axes.legend()
 result.picture(figure, "torsion.png", "Error of the bar's torsion constant against cells")
