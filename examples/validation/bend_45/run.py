@@ -41,7 +41,7 @@ axes.legend(title="force")
 result.picture(figure, "bend_45.png", "The arc at rest and under two forces")
 
 for row in values["rows"]:
-    result.compare_all(f"force {row['force']}: tip x, y, z", ours[row["force"]][0], row["tip"], values["tolerance"], source=values["source"])
+    result.compare_all(f"force {row['force']}: tip x, y, z", ours[row["force"]][0], row["tip"], values["tolerance"], source="Simo and Vu-Quoc 1986, 8 elements")
 fine = bent(300, 4, 2)[0]
 result.check("32 sections of constant strain beside 4 of quadratic, over the radius", float(np.linalg.norm(ours[300][0] - fine)) / 100, most=2e-4)
 result.check("2 sections of cubic strain beside 4 of quadratic, over the radius", float(np.linalg.norm(bent(300, 2, 3)[0] - fine)) / 100, most=1e-5)

@@ -36,6 +36,7 @@ for name, strains in {"torsion and bending": BENDING, "six strains": ALL}.items(
 result.say(f"Without the engine the tip of the rod of six strains is at ({', '.join(f'{x:.9f}' for x in exact)}), a shift by {np.linalg.norm(exact - [1, 0, 0]):.2f} of its length.")
 result.table(["rod", "order of strains", "sections", "errors of the tip / L", "power, last two", "promised"], rows)
 space.set(xlabel="sections", ylabel="error of the tip / L", title="six strains, against shooting")
+space.set_xscale("log", base=2)
 space.legend()
 
 # A stiff rod on a hinge is a pendulum, let go from horizontal: theta'' = 3 g / (2 L) cos theta.
@@ -65,6 +66,7 @@ angles = [swung(step) for step in steps]
 off = np.abs(np.array(angles) - state[0])
 time.loglog(np.array(steps) * 1e3, off, "o-")
 time.set(xlabel="step [ms]", ylabel="error of the angle after 0.6 s [rad]", title="a pendulum")
+time.set_xscale("log", base=2)
 result.picture(figure, "convergence.png", "Errors against sections and against steps")
 result.table(["step of the pendulum [ms]", "angle after 0.6 s [rad]", "error"], [[f"{1e3 * s:g}", f"{x:.6f}", f"{e:.1e}"] for s, x, e in zip(steps, angles, off, strict=True)])
 result.check("pendulum: the error falls with the step to the power", float(np.log2(off[2] / off[3])), 0.8, 1.2)

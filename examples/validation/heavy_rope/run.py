@@ -46,8 +46,8 @@ for part, (times, z) in moved.items():
     rows.append([f"{part:g}", f"{1e3 * np.abs(z).max():.3f}", f"{1e3 * np.ptp(z[times > 0.5 - 1e-9]):.4f}" if part < 1 else "", "holds" if part < 1 else "slides"])
     axes.plot(times, 1e3 * z, label=f"{part:g}")
 axes.set(xlabel="time [s]", ylabel="the short end rises by [mm]", ylim=(-2, 40))
-axes.legend(title="overhang, over the critical one")
-result.picture(figure, "heavy_rope.png", "How the short end moves: three ropes hold, two slide")
+axes.legend(title="overhang, over\nthe critical one", loc="center left", bbox_to_anchor=(1, 0.5))
+result.picture(figure, "heavy_rope.png", "How the short end moves: three ropes hold, two slide, until their end has left the drum and falls")
 result.table(["overhang, over the critical one", "the short end moves, most [mm]", "after 0.5 s [mm]", "the law says"], rows)
 result.say(f"The critical overhang of this rope is {1e3 * CRITICAL:.2f} mm, with {1e3 * LEFT:.0f} mm on the other side.")
 for part in values["hold"]:

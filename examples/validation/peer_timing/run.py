@@ -49,7 +49,7 @@ for step in (1e-4, 1e-3, 5e-3):
     axes.plot(at, 1e3 * tips[:, 2], label=f"{1e3 * step:g} ms")
     for name, published in theirs.items():
         if step == 1e-4:
-            result.tell(f"3 s of motion in steps of 0.1 ms, beside {name}", seconds, published, "s", values["what"])
+            result.tell(f"3 s of motion in steps of 0.1 ms, beside {name}", seconds, published, "s", "published, on a Core Ultra 7 165H")
 axes.set(xlabel="time [s]", ylabel="height of the tip [mm]")
 axes.legend(title="step")
 result.table(["step [ms]", "steps", "time [s]", "us a step", "tip at 3 s [m]"], rows)

@@ -27,7 +27,7 @@ def pulled(sections: int, angle: float, strains: Strains | None = None, **drive:
 
 
 bent, tips, drawn = [], [], []
-figure, axes = plt.subplots(figsize=(5, 4), layout="constrained")
+figure, axes = plt.subplots(figsize=(6, 3), layout="constrained")
 for sections in (1, 7):
     for angle in (0.0, 0.6, np.pi / 2, 2.5):
         state = pulled(sections, angle, tension=T)
@@ -40,7 +40,7 @@ for sections in (1, 7):
         if sections == 7:
             points = state.snapshot().rods[0].points
             axes.plot(points[:, 0], points @ towards, label=f"{angle:.2g} rad")
-axes.set(xlabel="x [m]", ylabel="towards the tendon [m]", aspect="equal")
+axes.set(xlabel="x [m]", ylabel="towards the tendon [m]")
 axes.legend(title="tendon at")
 result.picture(figure, "tendon.png", "The bent rod, seen in the plane of its tendon: the same for every angle")
 

@@ -53,6 +53,7 @@ for (kind, nu), order in expected.items():
     axes.loglog(cells[kind], errors, "o-", label=f"{kind}, {nu}")
 result.table(["elements", "Poisson's ratio", "cells a side", "errors of displacement", "order, last two", "promised"], rows)
 axes.set(xlabel="cells a side", ylabel="error of displacement")
+axes.set_xscale("log", base=2)
 axes.legend()
 result.picture(figure, "thick_cylinder.png", "Errors against cells a side")
 

@@ -71,6 +71,7 @@ figure, axes = plt.subplots(figsize=(5, 3.5), layout="constrained")
 for kind, finer in found.items():
     axes.loglog(cells[kind], np.abs(np.array(finer) / exact_bar - 1), "o-", label=kind)
 axes.set(xlabel="cells through the height", ylabel="error of the torsion constant")
+axes.set_xscale("log", base=2)
 axes.legend()
 result.picture(figure, "torsion.png", "Error of the bar's torsion constant against cells")
 result.finish()
