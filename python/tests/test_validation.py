@@ -91,7 +91,7 @@ def results(folder: Path, left_out: str = "", wrong: str = "") -> Path:
     """Results of all cases, as their scripts would leave them."""
     values = json.loads((EXAMPLES / "validation" / "reference_values.json").read_text())
     cases = {f"{file.parents[1].name}/{file.parent.name}" for file in EXAMPLES.glob("*/*/run.py")}
-    for case in cases | {own["case"] for own in values.values() if "case" in own}:
+    for case in cases | {own["case"] for own in values.values() if isinstance(own, dict) and "case" in own}:
         if case == left_out:
             continue
         check = {"what": "number", "value": 1.0, "unit": "m", "must": "1", "holds": case != wrong, "reference": 1.0, "source": "it", "deviation": 0.0, "tolerance": 0.1}
