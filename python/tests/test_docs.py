@@ -105,6 +105,18 @@ def test_every_status_is_on_the_page_of_troubles() -> None:
     assert told == statuses
 
 
+def test_theory_names_what_is_in_the_code() -> None:
+    text = (ROOT / "docs" / "theory.md").read_text()
+    named = re.findall(r"`(\w+/\w+)`((?:,?\s+`\w+`)+)", text)
+    assert len(named) > 30
+    for file, names in named:
+        sources = [ROOT / "src" / "sinew" / f"{file}.{end}" for end in ("hpp", "cpp")]
+        code = "".join(source.read_text() for source in sources if source.exists())
+        assert code, file
+        for name in re.findall(r"`(\w+)`", names):
+            assert re.search(rf"\b{name}\b", code), f"{file} {name}"
+
+
 PAGES = {page: blocks.blocks(page) for page in blocks.pages()}
 
 
