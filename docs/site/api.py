@@ -30,10 +30,14 @@ def python_page(name: str, title: str) -> str:
     parts = [f"# {name}", title + "."]
     for own, value in shown(name):
         kind = "class" if inspect.isclass(value) else "function" if callable(value) else "data"
-        options = "\n   :members:\n   :show-inheritance:" if kind == "class" else ""
+        options = "\n   :members:" if kind == "class" else ""
+        if own == "Scene":
+            options += "\n   :inherited-members:"
         if inspect.isclass(value) and issubclass(value, Exception):
             kind = "exception"
-        parts += [f"## {own}", f"```{{eval-rst}}\n.. auto{kind}:: {name}.{own}{options}\n```"]
+        renamed = inspect.isclass(value) and value.__name__ != own
+        where = f"{value.__module__}.{value.__name__}" if renamed else f"{name}.{own}"
+        parts += [f"## {own}", f"```{{eval-rst}}\n.. auto{kind}:: {where}{options}\n```"]
     return "\n\n".join(parts) + "\n"
 
 

@@ -4,13 +4,16 @@ on the git host as on the site; the pages of the API are made from headers and d
 from __future__ import annotations
 
 import os
+import re
 import sys
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import latex2mathml.converter
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.util import logging
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -34,7 +37,8 @@ CONTENTS = {
     "Features": ["docs/solids", "docs/rods", "docs/contact", "docs/inverse", "docs/python", "docs/page", "NOTATION", "examples/meshes/README"],
     "Theory": ["docs/theory", "src/sinew/*/README"],
     "Evidence": ["docs/validation*", "examples/paper/README", "examples/*/*/README", "docs/points", "docs/newton", "docs/elements", "bench/README"],
-    "API": ["docs/api/python/*", "docs/api/cpp/*"],
+    "Python API": ["docs/api/python/*"],
+    "C++ API": ["docs/api/cpp/*"],
     "Project": ["ARCHITECTURE", "CONTRIBUTING", "CHANGELOG", "python/README", "viewer/README"],
 }
 
@@ -42,9 +46,12 @@ myst_heading_anchors = 4  # as on the git host
 myst_fence_as_directive = {"math"}
 highlight_language = "text"
 copybutton_exclude = ".linenos, .gp, .go"
+autodoc_inherit_docstrings = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
+autodoc_type_aliases = {"npt.ArrayLike": "numpy.typing.ArrayLike"}
+nitpick_ignore_regex = [("py:.*", r"(?!sinew\.).*|sinew\.parts\.P")]  # names of other packages; nothing is fetched to link to them
 
 html_theme = "furo"
 html_static_path = ["site.css"]
@@ -70,6 +77,45 @@ def formula(translator: Any, node: nodes.math | nodes.math_block) -> None:
     raise nodes.SkipNode
 
 
+def plain_docstring(app: Sphinx, what: str, name: str, value: object, options: Any, lines: list[str]) -> None:
+    """Docstrings are plain text in which lines `name: meaning` tell of arguments: a list, and code between backticks."""
+    said: list[str] = []
+    in_list = False
+    for line in lines:
+        text = re.sub(r"[*|\\]|(?<=\w)_(?=\W|$)", r"\\\g<0>", line.strip())
+        text = re.sub(r"`+([^`]+)`+", r"``\1``", text)
+        argument = re.match(r"(\w+): (.*)", text)
+        if argument:
+            said += [*([] if in_list else [""]), f"* **{argument.group(1)}**: {argument.group(2)}"]
+        elif in_list and text:
+            said[-1] += f" {text}"
+        else:
+            said.append(text)
+        in_list = bool(text) and (in_list or argument is not None)
+    lines[:] = said
+
+
+def plain_signature(app: Sphinx, what: str, name: str, value: object, options: Any, signature: str, returns: str) -> tuple[str, str]:
+    """Types by the names that people know."""
+    names = {r"TypeAliasForwardRef\('([\w.]+)'\)": r"\1", r"ndarray\[tuple\[Any, \.\.\.\], dtype\[\w+\]\]": "ndarray"}
+    for pattern, known in names.items():
+        signature, returns = (re.sub(pattern, known, text) if text else text for text in (signature, returns))
+    return signature, returns
+
+
+def outside_links(app: Sphinx, doctree: nodes.document, page: str) -> None:
+    """Nothing is fetched, so of links that lead elsewhere only the form is looked at; build/links.txt lists them."""
+    for link in doctree.findall(nodes.reference):
+        address = link.get("refuri", "")
+        parts = urlsplit(address)
+        if not parts.scheme:
+            continue
+        if parts.scheme != "https" or "." not in parts.netloc or re.search(r"[\s<>]", address):
+            logging.getLogger(__name__).warning("a link in bad form: %s", address, location=link)
+        with (ROOT / "build" / "links.txt").open("a") as listed:
+            listed.write(f"{page}: {address}\n")
+
+
 def first_page(app: Sphinx, error: Exception | None) -> None:
     """index.html leads to the first page, which is called as on the git host."""
     if error is None and app.builder.format == "html":
@@ -81,4 +127,8 @@ def setup(app: Sphinx) -> None:
     api.write(ROOT)
     app.add_html_math_renderer("mathml", (formula, None), (formula, None))
     app.connect("source-read", add_contents)
+    app.connect("autodoc-process-docstring", plain_docstring)
+    app.connect("autodoc-process-signature", plain_signature)
+    (ROOT / "build" / "links.txt").unlink(missing_ok=True)
+    app.connect("doctree-resolved", outside_links)
     app.connect("build-finished", first_page)
