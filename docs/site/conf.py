@@ -73,6 +73,8 @@ def formula(translator: Any, node: nodes.math | nodes.math_block) -> None:
     """TeX as MathML, which browsers draw without a script or fonts from elsewhere."""
     block = isinstance(node, nodes.math_block)
     text = latex2mathml.converter.convert(node.astext(), display="block" if block else "inline")
+    if "\\" in text or node.astext().count("{") != node.astext().count("}"):
+        logging.getLogger(__name__).warning("a formula that is none: %s", node.astext(), location=node)
     translator.body.append(f'<div class="formula">{text}</div>' if block else text)
     raise nodes.SkipNode
 
@@ -97,7 +99,8 @@ def plain_docstring(app: Sphinx, what: str, name: str, value: object, options: A
 
 def plain_signature(app: Sphinx, what: str, name: str, value: object, options: Any, signature: str, returns: str) -> tuple[str, str]:
     """Types by the names that people know."""
-    names = {r"TypeAliasForwardRef\('([\w.]+)'\)": r"\1", r"ndarray\[tuple\[Any, \.\.\.\], dtype\[\w+\]\]": "ndarray"}
+    names = {r"TypeAliasForwardRef\('([\w.]+)'\)": r"\1", r"ndarray\[tuple\[Any, \.\.\.\], dtype\[\w+\]\]": "ndarray",
+             r"sinew\._engine\.(?!Contact\b)": "sinew."}
     for pattern, known in names.items():
         signature, returns = (re.sub(pattern, known, text) if text else text for text in (signature, returns))
     return signature, returns
