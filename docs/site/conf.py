@@ -36,7 +36,7 @@ CONTENTS = {
     "How to": ["docs/howto/own_mesh", "docs/howto/sections_and_step", "docs/howto/reading_forces", "docs/howto/troubleshooting"],
     "Features": ["docs/solids", "docs/rods", "docs/contact", "docs/inverse", "docs/python", "docs/page", "NOTATION", "examples/meshes/README"],
     "Theory": ["docs/theory", "src/sinew/*/README"],
-    "Evidence": ["docs/validation*", "examples/paper/README", "examples/*/*/README", "docs/points", "docs/newton", "docs/elements", "bench/README"],
+    "Evidence": ["docs/validation*", "examples/paper/README*", "examples/validation/README*", "examples/*/*/README", "docs/points", "docs/newton", "docs/elements", "bench/README"],
     "Python API": ["docs/api/python/*"],
     "C++ API": ["docs/api/cpp/*"],
     "Project": ["ARCHITECTURE", "CONTRIBUTING", "CHANGELOG", "python/README", "viewer/README"],

@@ -21,6 +21,7 @@ import blocks  # noqa: E402
 # Blocks that the tests do not run, by page: they install, build, measure for minutes, serve a page, or need what is not here.
 NOT_RUN = {
     "README.md": 2,
+    "bench/README.md": 4,
     "docs/howto/own_mesh.md": 1,
     "docs/page.md": 2,
     "docs/python.md": 1,
@@ -143,7 +144,7 @@ def test_few_blocks_are_not_run() -> None:
     assert {page: number for page, number in left_out.items() if number} == NOT_RUN
 
 
-@pytest.mark.parametrize("page", ["README.md", "python/README.md", *(page for page in PAGES if page.startswith("docs/"))])
+@pytest.mark.parametrize("page", ["README.md", "bench/README.md", "python/README.md", "viewer/README.md", *(page for page in PAGES if page.startswith("docs/"))])
 def test_code_is_fenced(page: str) -> None:
     """What is only indented is not run."""
     text = re.sub(r"^```.*?^```$", "", (ROOT / page).read_text(), flags=re.MULTILINE | re.DOTALL)
