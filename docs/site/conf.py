@@ -132,6 +132,7 @@ def setup(app: Sphinx) -> None:
     app.connect("source-read", add_contents)
     app.connect("autodoc-process-docstring", plain_docstring)
     app.connect("autodoc-process-signature", plain_signature)
-    (ROOT / "build" / "links.txt").unlink(missing_ok=True)
+    (ROOT / "build").mkdir(exist_ok=True)
+    (ROOT / "build" / "links.txt").write_text("")
     app.connect("doctree-resolved", outside_links)
     app.connect("build-finished", first_page)
