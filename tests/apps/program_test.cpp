@@ -283,32 +283,6 @@ TEST(Run, TheExampleToItsEnd_slow) {
   expect_numbers_only(folder / "out");
 }
 
-TEST(Documents, every_scene_in_them_is_sound) {
-  const Folder folder;
-  std::filesystem::create_directory_symlink(examples() / "meshes", folder / "meshes");
-  for (const auto& [name, least] : {std::pair("rods.md", 4), {"solids.md", 4}, {"contact.md", 2}, {"inverse.md", 1}}) {
-    std::istringstream text(read_file(examples().parent_path() / "docs" / name));
-    int count = 0;
-    std::string block;
-    bool inside = false;
-    for (std::string line; std::getline(text, line);) {
-      if (!inside) {
-        inside = line == "```yaml";
-        block.clear();
-      } else if (line != "```") {
-        block += line + "\n";
-      } else {
-        inside = false;
-        ++count;
-        std::ofstream(folder / "snippet.yaml") << block;
-        const Finished done = sinew({"check", (folder / "snippet.yaml").string()});
-        EXPECT_EQ(done.code, 0) << name << ", block " << count << "\n" << block << said(done);
-      }
-    }
-    EXPECT_GE(count, least) << name;
-  }
-}
-
 /// What was found for the motors leads the tip along the same way, without targets.
 TEST(Inverse, CommandsOfARunDriveItAgain) {
   const Folder folder;
