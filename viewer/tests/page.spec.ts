@@ -190,6 +190,9 @@ test("it connects again when the server is back", async ({ page }) => {
   await page.waitForFunction((before) => window.sinew.tally.frames > before + 5, frames);
   await expect(page.locator("#status")).not.toContainText("No connection");
   await again.stop();
+  const other = await Served.start("examples/finger.yaml", "--port", served.port, "--token", "somebody else's");
+  await expect(page.locator("#status")).toContainText("open the address that it printed", { timeout: 15_000 });
+  await other.stop();
 });
 
 test("an exported run plays from the disk without a network", async ({ page, context }) => {
@@ -218,6 +221,103 @@ test("plots follow, and are saved", async ({ page }) => {
   expect(rows[0]).toContain("pull_right.force");
   const times = rows.slice(1).map((row) => Number(row.split(",")[0]));
   expect(times.every((time, i) => i === 0 || time > times[i - 1]!)).toBe(true);
+  await served.stop();
+});
+
+/** What the legend says, a row for each kind. */
+async function legend(page: Page): Promise<string[]> {
+  return page.locator("#legend span").allTextContents();
+}
+
+test("an exported run has every quantity, each under its own name", async ({ page }) => {
+  const place = folder();
+  sinew("run", "examples/finger.yaml", "-o", join(place, "out"), "-q", "--set", "time.duration=0.5 s");
+  sinew("export", join(place, "out"), "-o", join(place, "finger.html"));
+  await open(page, `file://${join(place, "finger.html")}`);
+  await page.waitForFunction(() => window.sinew.frame().frame === 50 && !window.sinew.frame().playing);
+  for (const [name, unit] of [["von_mises", /kPa$/], ["volume_ratio", /^(0\.9|1\.0)/]] as const) {
+    await page.getByLabel("Solids").selectOption(name);
+    await expect(page.locator("#legend span").nth(1)).toHaveText(unit);
+  }
+  await page.getByLabel("Rods").selectOption("bending");
+  await expect(page.locator("#legend span")).toHaveCount(4);
+  expect((await legend(page))[3]).toMatch(/1\/m$/);
+  await page.getByLabel("Rods").selectOption("von_mises");
+  await expect(page.locator("#legend span").nth(3)).toHaveText(/MPa$/);
+  // Plots have the whole run, whatever of it was seen.
+  const rows = (await page.evaluate(() => window.sinew.csv())).trim().split("\n");
+  expect(rows.length).toBe(52);
+  expect(rows[0]).toMatch(/^time \[s\],.*\[(N|m)\]/);
+});
+
+test("a rod alone has a legend of its own", async ({ page }) => {
+  const served = await Served.start("examples/tendon_arm.yaml");
+  await open(page, served.address);
+  await page.getByLabel("Rods").selectOption("bending");
+  await expect(page.locator("#legend span").first()).toHaveText("bending");
+  await page.waitForFunction(() => Number.parseFloat(document.querySelectorAll("#legend span")[1]!.textContent!.split("…")[1]!) > 0.1);
+  await served.stop();
+});
+
+test("two pages show what each of them chose", async ({ page, context }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  await page.getByLabel("Solids").selectOption("von_mises");
+  await expect(page.locator("#legend")).toContainText("kPa");
+  const other = await context.newPage();
+  await open(other, served.address);
+  await other.getByLabel("Solids").selectOption("volume_ratio");
+  await expect(other.locator("#legend")).toContainText(/volume ratio.*(0\.9|1\.0)/);
+  await page.bringToFront();
+  const frames = await page.evaluate(() => window.sinew.tally.frames);
+  await page.waitForFunction((before) => window.sinew.tally.frames > before + 5, frames);
+  expect((await legend(page)).join(" ")).toMatch(/von Mises stress.*kPa/);
+  await served.stop();
+});
+
+test("looks: section, opacity, presets, keys after a click", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml", "--set", "actuators.pull.displacement=0 mm");
+  await open(page, served.address);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await page.waitForFunction(() => !window.sinew.frame().playing);
+  const seen = async (): Promise<Buffer> => {
+    const draws = await page.evaluate(() => window.sinew.tally.draws);
+    await page.waitForFunction((before) => window.sinew.tally.draws > before, draws);
+    return page.locator("#view").screenshot();
+  };
+  const all: Buffer[] = [];
+  await page.getByLabel("Section", { exact: true }).fill("0.5");
+  all.push(await seen());
+  await page.getByLabel("cut").selectOption("from −y");
+  all.push(await seen());
+  await page.getByLabel("Opacity").fill("1");
+  all.push(await seen());
+  await page.getByRole("button", { name: "Top" }).click();
+  all.push(await seen());
+  await page.keyboard.press("2"); // with the button still in focus
+  all.push(await seen());
+  all.forEach((own, i) => all.slice(i + 1).forEach((other) => expect(own.equals(other)).toBe(false)));
+  const time = await page.evaluate(() => window.sinew.frame().time);
+  await page.keyboard.press(".");
+  await page.waitForFunction((before) => window.sinew.frame().time > before, time);
+  await served.stop();
+});
+
+test("pictures and videos are saved", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  const begin = async (name: string): Promise<string> => {
+    const [saved] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name, exact: true }).click()]);
+    return saved.path();
+  };
+  const picture = readFileSync(await begin("Picture"));
+  expect(picture.subarray(1, 4).toString()).toBe("PNG");
+  await page.getByRole("button", { name: "Video" }).click();
+  const draws = await page.evaluate(() => window.sinew.tally.draws);
+  await page.waitForFunction((before) => window.sinew.tally.draws > before + 10, draws);
+  const film = readFileSync(await begin("Stop"));
+  expect(film.readUInt32BE(0)).toBe(0x1a45dfa3); // WebM
+  expect(film.length).toBeGreaterThan(5000);
   await served.stop();
 });
 
