@@ -1,0 +1,150 @@
+"""The direct model refined: mesh, sections, points and time step, each by itself and points with the mesh."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
+from paper import Result, smooth
+from pictures import Array
+
+import sinew
+
+result = Result(__file__, "The direct model, refined")
+SCENE = result.scene()
+# [mm] of the cable in material: base, four ribs, tip
+WITHIN = [(0.0, 18.8), (25.2, 32.8), (39.2, 46.8), (53.2, 60.8), (67.2, 74.8), (81.2, 90.0)]
+Cells = npt.NDArray[np.int64]
+
+
+def finer(points: Array, cells: Cells) -> tuple[Array, Cells]:
+    """Every tetrahedron in eight (Bey's), the shape as it was."""
+    edges = np.sort(cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]].reshape(-1, 2), axis=1)
+    unique, number = np.unique(edges, axis=0, return_inverse=True)
+    ab, ac, ad, bc, bd, cd = (len(points) + number.reshape(-1, 6)).T
+    a, b, c, d = cells.T
+    children = [(a, ab, ac, ad), (ab, b, bc, bd), (ac, bc, c, cd), (ad, bd, cd, d), (ab, ac, ad, bd), (ab, ac, bc, bd), (ac, ad, bd, cd), (ac, bc, bd, cd)]
+    made = np.concatenate([np.stack(own, axis=1) for own in children])
+    points = np.concatenate([points, points[unique].mean(axis=1)])
+    corners = points[made]
+    turned = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0.0
+    made[turned] = made[turned][:, [0, 2, 1, 3]]
+    return points, made
+
+
+start = sinew.build(SCENE).initial_state().snapshot().solids[0]
+levels = [(start.rest.copy(), start.cells["tetra"].astype(np.int64))]
+while len(levels) < 3:
+    levels.append(finer(*levels[-1]))
+meshes = [sinew.Mesh(points, {"tetra": cells}) for points, cells in levels]
+
+
+def places(per_piece: int) -> list[float]:
+    """[m] of so many points in every piece of material, the tip besides."""
+    return [1e-3 * (low + (high - low) * (k + 0.5) / per_piece) for low, high in WITHIN for k in range(per_piece)] + [0.09]
+
+
+def at_rest(level: int = 0, order: int = 1, sections: int = 15, degree: int = 0, per_piece: int = 1) -> tuple[Array, float]:
+    """Where the tip comes to rest [mm], and how far the cable is pulled out [mm]."""
+    scene = sinew.Scene.from_file(SCENE)
+    body, rod, slide = scene.solids["finger"], scene.rods["cable"], scene.couplings[0]
+    assert isinstance(slide, sinew.Slide)
+    if level > 0:
+        body.mesh, body.scale = meshes[level], 1.0
+    body.order, rod.sections, rod.order, slide.points = order, sections, degree, places(per_piece)
+    state = sinew.simulate(scene, progress=False).state()
+    return 1e3 * state.output("tip"), 1e3 * float(state.displacements[0])
+
+
+def orders(sizes: Sequence[float], errors: Sequence[float]) -> list[str]:
+    """From one to the next."""
+    e, h = np.log(errors), np.log(sizes)
+    return ["", *[f"{(e[k] - e[k + 1]) / (h[k] - h[k + 1]):.2f}" for k in range(len(errors) - 1)]]
+
+
+def fitted(sizes: Sequence[float], errors: Sequence[float]) -> float:
+    """The order of all of them."""
+    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+
+
+figure, panels = plt.subplots(2, 2, figsize=(11, 8.4), layout="constrained")
+(by_sections, by_points), (by_mesh, by_step) = panels
+
+# Sections
+COUNTS = [3, 6, 12, 24, 48, 96]
+found: dict[int, float] = {}
+rows: list[list[object]] = []
+for degree in (0, 1):
+    counts = COUNTS if degree == 0 else COUNTS[:-1]
+    tips = [at_rest(sections=count, degree=degree)[0] for count in [*counts, 4 * counts[-1]]]
+    errors = [float(np.linalg.norm(own - tips[-1])) for own in tips[:-1]]
+    found[degree] = fitted([90.0 / c for c in counts[1:]], errors[1:])
+    for count, error, order in zip(counts, errors, orders([90.0 / c for c in counts], errors), strict=True):
+        rows.append([["constant", "linear"][degree], count, f"{error:.2g}", order])
+    by_sections.loglog(counts, errors, "o-", label=f"strains {['constant', 'linear'][degree]} in a section")
+by_sections.set(xlabel="sections", ylabel="tip from that of the finest [mm]", title="sections (7 points, mesh as it is)")
+result.say("*Sections.* How far the tip is from where four times the largest number of sections brings it, with 7 points:")
+result.table(["strains in a section", "sections", "tip off [mm]", "order"], rows)
+
+# Mesh and points
+names = {1: "linear", 2: "quadratic"}
+rows = []
+rest: dict[tuple[int, int, int], tuple[Array, float]] = {}
+for order, own_levels in ((1, (0, 1, 2)), (2, (0, 1))):
+    for level in own_levels:
+        for per_piece in (1, 2, 4, 8):
+            rest[order, level, per_piece] = at_rest(level, order, 60, 0, per_piece)
+tip_rest = np.array([95.0, 0.0, 0.0])
+travel = {key: float(np.linalg.norm(tip - tip_rest)) for key, (tip, _) in rest.items()}
+for order, level in dict.fromkeys((key[0], key[1]) for key in rest):
+    rows.append([names[order], len(levels[level][1]), *[f"{travel[order, level, p]:.2f}, {rest[order, level, p][1]:.2f}" for p in (1, 2, 4, 8)]])
+result.say("*Mesh and points.* How far the tip travels and the cable is pulled out [mm], at 1 N, with 60 sections:")
+result.table(["elements", "tetrahedra", *[f"{6 * p + 1} points" for p in (1, 2, 4, 8)]], rows)
+for order, level in dict.fromkeys((key[0], key[1]) for key in rest):
+    label = f"{names[order]}, {len(levels[level][1])}"
+    by_points.semilogx([6 * p + 1 for p in (1, 2, 4, 8)], [travel[order, level, p] for p in (1, 2, 4, 8)], "os"[order - 1] + "-", label=label)
+by_points.set(xlabel="points", ylabel="tip travels [mm]", title="points, on meshes of so many tetrahedra")
+for p, style in ((1, "-"), (8, ":")):
+    for order, own_levels in ((1, (0, 1, 2)), (2, (0, 1))):
+        sizes = [len(levels[level][0]) if order == 1 else len(levels[level + 1][0]) for level in own_levels]
+        by_mesh.semilogx([3 * n for n in sizes], [travel[order, level, p] for level in own_levels], "os"[order - 1] + style, label=f"{names[order]}, {6 * p + 1} points")
+by_mesh.set(xlabel="unknowns of the solid", ylabel="tip travels [mm]", title="mesh")
+
+# Time step
+STEP, SECONDS, PULL = 0.64e-3, 0.5, 0.010
+SIZES = [16 * STEP, 8 * STEP, 4 * STEP, 2 * STEP]
+
+
+def in_motion(step: float, newton: Any) -> Array:
+    """Where the tip is as the pull ends [mm]."""
+    changes = {"analysis": "dynamic", "time.step": step, "newton": newton, "actuators.pull": sinew.Actuator(rod="cable", displacement="external")}
+    model = sinew.build(SCENE, changes)
+    state = model.initial_state()
+    count = round(0.8 * SECONDS / step)
+    for k in range(count):
+        report = sinew.step(model, {"pull": PULL * smooth(min(1.0, (k + 1) * step / SECONDS))}, state)
+        assert report.accepted, report.meaning
+    return 1e3 * state.output("tip")
+
+
+rows, steps_order = [], {}
+finest = {step: in_motion(step, "converged") for step in (STEP, STEP / 2)}
+limit = 2.0 * finest[STEP / 2] - finest[STEP]  # first order taken out
+for newton, name in (("converged", "converged"), (1, "one linearisation")):
+    errors = [float(np.linalg.norm(in_motion(step, newton) - limit)) for step in SIZES]
+    steps_order[name] = fitted(SIZES, errors)
+    rows += [[name, f"{1e3 * step:.2f}", f"{error:.4f}", order] for step, error, order in zip(SIZES, errors, orders(SIZES, errors), strict=True)]
+    by_step.loglog([1e3 * step for step in SIZES], errors, "o-", label=name)
+by_step.set(xlabel="time step [ms]", ylabel="tip off [mm]", title="time step, in motion")
+result.say("*Time step.* How far the tip is, in the midst of a pull of 10 mm in 0.5 s, from where steps of 0.32 and 0.64 ms head for:")
+result.table(["steps", "h [ms]", "tip off [mm]", "order"], rows)
+for axes in panels.flat:
+    axes.grid(True, which="both", alpha=0.3)
+    axes.legend(fontsize=8)
+result.picture(figure, "refinement.png", "Errors of the tip against sections, points, mesh and time step")
+print(found, steps_order)
+result.finish()

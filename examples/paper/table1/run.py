@@ -1,0 +1,152 @@
+"""Table I: sizes of the robots and what a step costs, in the authors' own layout and as printed."""
+
+import platform
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import numpy as np
+from paper import Result, smooth
+from pictures import Array
+
+import sinew
+
+STEPS = 300
+result = Result(__file__, "Table I: sizes and times of a step")
+FINGER, TRUNK = result.scene("../finger_inverse/scene.yaml"), result.scene("../trunk_inverse/scene.yaml")
+GRASPER, COMPARISON = result.scene("../grasper/scene.yaml"), result.scene("comparison.yaml")
+
+
+@dataclass
+class Case:
+    """A row of the table. `rows`: constraints of sliding points that act across the cable, and those of its anchor."""
+
+    name: str
+    cells: int
+    sections: int
+    points: list[int]
+    paper: str
+    sofa: str
+    scene: sinew.Scene
+    inverse: bool = False
+
+    @property
+    def rows(self) -> int:
+        return sum(2 * (count - 1) + 3 for count in self.points)
+
+
+def processor() -> str:
+    """What it runs on."""
+    told = Path("/proc/cpuinfo")
+    names = [line.split(":")[1].strip() for line in told.read_text().splitlines() if line.startswith("model name")] if told.exists() else []
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def of_file(file: Path, change: Callable[[sinew.Scene], None] = lambda scene: None) -> sinew.Scene:
+    scene = sinew.Scene.from_file(file)
+    change(scene)
+    return scene
+
+
+def slides(scene: sinew.Scene) -> list[sinew.Slide]:
+    return [own for own in scene.couplings if isinstance(own, sinew.Slide)]
+
+
+def laid(sections: int, points: int) -> Callable[[sinew.Scene], None]:
+    """Every cable in so many sections, held at so many points at equal distances."""
+
+    def change(scene: sinew.Scene) -> None:
+        for rod in scene.rods.values():
+            rod.sections = sections
+        for own in slides(scene):
+            own.points = points
+
+    return change
+
+
+def geometric(scene: sinew.Scene) -> None:
+    scene.rods["cable"].cable = "geometric"
+
+
+cases = [
+    Case("finger, authors' layout", 389, 6, [7], "4.31 (inverse)", "", of_file(FINGER), True),
+    Case("finger, as printed", 389, 15, [15], "4.31 (inverse)", "8.3", of_file(FINGER, laid(15, 15)), True),
+    Case("trunk, authors' layout", 1972, 80, [10] * 4, "82.33 (inverse)", "62", of_file(TRUNK), True),
+    Case("trunk, as printed", 1972, 84, [21] * 4, "82.33 (inverse)", "", of_file(TRUNK, laid(21, 21)), True),
+    Case("grasper, authors' layout", 1167, 18, [7] * 3, "35.97 (direct, contact)", "14.9 to 19", of_file(GRASPER, laid(6, 7))),
+    Case("grasper, as printed", 1167, 45, [15] * 3, "35.97 (direct, contact)", "", of_file(GRASPER)),
+    Case("finger, 8 sections", 389, 8, [9], "3.83 (direct)", "", of_file(COMPARISON)),
+    Case("finger, geometric cable", 389, 0, [9], "2.54 (direct)", "1.5", of_file(COMPARISON, geometric)),
+]
+
+
+def measured(case: Case, model: sinew.Model) -> tuple[list[float], sinew.State, float, float]:
+    """Times of steps [ms], the end, how far off its targets it was at most [mm], and the largest force [N]."""
+    state, times, off, force = model.initial_state(), [], 0.0, 0.0
+    goals: list[Array | None] = [None] * (STEPS if not case.name.startswith("grasper") else model.steps)
+    if case.inverse:  # where forces bring the tip at rest is where it is told to go in motion
+        most = np.array([1.5] if "finger" in case.name else [0.10, 0.06, 0.04, 0.06])
+        still = sinew.build(case.scene, changes={"analysis": "quasi_static", "newton": "converged"})
+        rest = still.initial_state()
+        for k in range(len(goals)):
+            report = sinew.step(still, list(most * smooth((k + 1) / len(goals))), rest)
+            assert report.accepted, report.meaning
+            goals[k] = rest.output("tip")
+    for goal in goals:
+        begin = time.perf_counter()
+        report = sinew.step(model, None, state, targets=None if goal is None else {"tip": goal})
+        times.append(1e3 * (time.perf_counter() - begin))
+        assert report.accepted, report.meaning
+        if goal is not None:
+            off = max(off, 1e3 * float(np.linalg.norm(state.output("tip") - goal)))
+        force = max(force, float(np.abs(state.forces).max()))
+    return times, state, off, force
+
+
+lines, medians = [], {}
+for case in cases:
+    model = sinew.build(case.scene, changes={"newton": 1})
+    times, state, off, force = measured(case, model)
+    medians[case.name] = float(np.median(times))
+    cells = sum(len(own.cells["tetra"]) for own in state.snapshot().solids)
+    sections = sum((len(own.q) - 1) // 3 for own in state.rods.values())  # a base that moves along, three strains a section
+    points = sum(case.points)
+    result.check(f"{case.name}: tetrahedra", cells, case.cells, case.cells)
+    result.check(f"{case.name}: sections", sections, case.sections, case.sections)
+    result.check(f"{case.name}: rows of a step, three a point and one a motor, none dropped", model.rows, 3 * points + len(model.actuators), 3 * points + len(model.actuators))
+    if case.inverse:
+        result.check(f"{case.name}: farthest from its targets", off, most=1.0, unit="mm")
+        result.check(f"{case.name}: no cable pushes, least force at the end", float(state.forces.min()), least=0.0, unit="N")
+    lines.append(
+        [case.name, cells, sections, points, case.rows, f"{np.median(times):.3f}", f"{np.percentile(times, 95):.3f}", case.paper, case.sofa]
+    )
+result.say(
+    f"{processor()}, one thread, one linearised step of 10 ms (`newton: 1`) from Python, the median over a run; the paper: i7-8850H, 2.6 GHz; SOFA 26.06 with "
+    "the Cosserat plugin: two shared cores of a 2.1 to 2.4 GHz Xeon. Rows: two across the cable at every sliding point, three at its anchor. (A step solves one "
+    "more row a point, for its place along the cable.)"
+)
+result.table(["robot", "tetrahedra", "sections", "points", "rows", "ms, median", "95 %", "the paper, ms", "SOFA, ms"], lines)
+
+REFERENCES = {  # [mm] of the tip
+    ("cosserat", 5): {"SOFA": (79.69, 14.24, 0.34), "a prototype": (79.63, 14.21, 0.54)},
+    ("cosserat", 10): {"SOFA": (68.50, 29.98, -0.16), "a prototype": (68.22, 30.55, 0.30)},
+    ("geometric", 5): {"SOFA": (79.11, 16.26, 0.25)},
+    ("geometric", 10): {"SOFA": (65.81, 33.66, -0.41)},
+}
+start, rows = np.array([85.5, -5.5, 0.5]), []
+for (kind, pull), others in REFERENCES.items():
+    changes = {"analysis": "quasi_static", "time.step": "100 ms", "time.duration": "1 s", "newton": "converged",
+               "actuators.pull.displacement": {"times": [0, 1], "values": [0, f"{pull} mm"]}}
+    tip = 1e3 * sinew.simulate(COMPARISON, changes={**changes, "rods.cable.cable": kind}, progress=False).state().output("tip")
+    travel = float(np.linalg.norm(tip - start))
+    for source, other in others.items():
+        apart = float(np.linalg.norm(tip - other))
+        rows.append([kind, pull, source, ", ".join(f"{x:.2f}" for x in other), ", ".join(f"{x:.2f}" for x in tip), f"{100 * apart / travel:.1f} %"])
+        if (kind, source) != ("geometric", "SOFA"):
+            result.check(f"tip at {pull} mm beside {source}, of its travel", 100 * apart / travel, most=2.0, unit="%")
+result.say("Where the comparison finger's tip comes to rest:")
+result.table(["cable", "pulled [mm]", "other", "its tip [mm]", "ours [mm]", "apart, of the travel"], rows)
+result.finish()
