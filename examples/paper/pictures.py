@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib import colormaps
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize, to_rgb
+from matplotlib.colors import ListedColormap, Normalize, to_rgb
 
 import sinew
 
 Array = npt.NDArray[np.float64]
-COLORS = "turbo"  # blue: none, red: much
+COLORS = ListedColormap(colormaps["turbo"](np.linspace(0.07, 0.93, 256)))  # blue: none, red: much
 
 
 class View:

@@ -17,7 +17,7 @@ FORCE, PULL = 3.0, 0.010  # N, m
 SCENE = "../sections/scene.yaml"
 result = Result(__file__, "Fig. 7: radius of the cable")
 
-figure, panels = plt.subplots(2, len(RADII), figsize=(13, 6.2), sharex=True, sharey=True, layout="constrained")
+figure, panels = plt.subplots(2, len(RADII), figsize=(13, 4.2), sharex=True, sharey=True, layout="constrained")
 drives = {
     f"force of {FORCE:g} N": sinew.Actuator(rod="cable", force=sinew.Table(times=[0, 1], values=[0, FORCE])),
     f"pull of {1e3 * PULL:g} mm": sinew.Actuator(rod="cable", displacement=sinew.Table(times=[0, 1], values=[0, PULL])),

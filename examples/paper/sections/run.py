@@ -58,7 +58,7 @@ result.table(
     ],
 )
 
-figure, panels = plt.subplots(2, 4, figsize=(13, 7.4), layout="constrained")
+figure, panels = plt.subplots(2, 4, figsize=(13, 6.8), layout="constrained")
 norm = Normalize(0.0, float(bent[80].max()))
 for axes, count in zip(panels.flat, COUNTS):
     view = View(axes, [0, 0, 1])
@@ -67,12 +67,14 @@ for axes, count in zip(panels.flat, COUNTS):
     view.balls(targets, "gold")
     axes.set(title=f"{count} sections: {largest[count]:.2g} mm" if count < 80 else "80 sections: targets", xlim=(-25, 50), ylim=(-18, 55))
     axes.label_outer()
-figure.colorbar(colors, ax=panels, label="bending about z [1/m]", shrink=0.6, location="left")
+figure.colorbar(colors, ax=panels, label="bending about z [1/m]", shrink=0.7)
 panels[-1, -1].loglog(COUNTS[:-1], [largest[count] for count in COUNTS[:-1]], "o-")
 panels[-1, -1].axhline(RADIUS, color="gray", ls=":")
 panels[-1, -1].text(3, 1.1 * RADIUS, "the cable's radius")
-panels[-1, -1].set(xlabel="sections", title="largest distance from a target [mm]")
-panels[-1, -1].grid(True, which="both", alpha=0.3)
+panels[-1, -1].set(xlabel="sections", title="farthest from a target [mm]")
+panels[-1, -1].set_xticks(COUNTS[:-1], labels=[str(count) for count in COUNTS[:-1]])
+panels[-1, -1].minorticks_off()
+panels[-1, -1].grid(True, alpha=0.3)
 result.picture(figure, "sections.png", "The bent finger with cables of 3 to 80 sections, in the colours of their bending, and the four targets")
 
 result.check("6 sections: largest error at the targets", largest[6], most=1.0, unit="mm")

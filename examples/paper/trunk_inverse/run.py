@@ -73,8 +73,8 @@ result.table(
         ["a step, median [ms] (the paper: 82.33)", "", f"{np.median(times):.2f}"],
     ],
 )
-figure = plt.figure(figsize=(13, 6.6), layout="constrained")
-top, bottom = figure.subfigures(2, 1)
+figure = plt.figure(figsize=(13, 5.8), layout="constrained")
+top, bottom = figure.subfigures(2, 1, height_ratios=[0.6, 1.0])
 panels = top.subplots(1, len(shapes), sharex=True, sharey=True)
 most = max(float(bending(rod).max()) for _, seen in shapes for rod in seen.rods)
 for axes, (when, seen) in zip(panels, shapes, strict=True):
