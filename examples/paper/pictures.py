@@ -29,7 +29,7 @@ class View:
 
     def flat(self, points: npt.ArrayLike) -> Array:
         """Points [m] on the picture [mm]. (..., 3) -> (..., 2)"""
-        return 1e3 * (np.asarray(points, dtype=float) @ self.plane.T)
+        return np.asarray(1e3 * (np.asarray(points, dtype=float) @ self.plane.T))
 
     def surface(self, nodes: Array, triangles: npt.NDArray[np.int32], color: str, alpha: float) -> None:
         """The sides that look here, the farthest first, the darker the more they look away."""
@@ -39,7 +39,7 @@ class View:
         order = np.argsort(corners.mean(axis=1) @ self.toward)
         order = order[facing[order] > 0.0]
         shade = 0.55 + 0.45 * facing[order, None]
-        faces = PolyCollection(self.flat(corners[order]), facecolors=shade * np.array(to_rgb(color)), alpha=alpha, linewidths=0)
+        faces = PolyCollection(list(self.flat(corners[order])), facecolors=shade * np.array(to_rgb(color)), alpha=alpha, linewidths=0)
         self.axes.add_collection(faces)
         self.axes.autoscale_view()
 
@@ -50,7 +50,7 @@ class View:
         """A curve in the colours of what it bears at its points."""
         flat = self.flat(points)
         parts = LineCollection(
-            np.stack([flat[:-1], flat[1:]], axis=1), array=0.5 * (values[:-1] + values[1:]), norm=norm, cmap=COLORS,
+            list(np.stack([flat[:-1], flat[1:]], axis=1)), array=0.5 * (values[:-1] + values[1:]), norm=norm, cmap=COLORS,
             linewidths=width, capstyle="round", zorder=3,
         )
         self.axes.add_collection(parts)

@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import Normalize
 from paper import Result, smooth
-from pictures import View
+from pictures import Array, View
 
 import sinew
 
@@ -32,7 +32,7 @@ for k in range(STEPS + 1):
 
 
 # The same path as a target: found by one small problem in every step, at rest and in motion.
-def follow(model: sinew.Model, targets: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, list[float]]:
+def follow(model: sinew.Model, targets: list[Array]) -> tuple[Array, Array, list[float]]:
     state = model.initial_state()
     off, found, times = [], [], []
     for target in targets:
@@ -44,7 +44,7 @@ def follow(model: sinew.Model, targets: list[np.ndarray]) -> tuple[np.ndarray, n
         found.append(state.forces[0])
     return np.array(off), np.array(found), times
 
-rest_off, rest_pull, _ = follow(direct, path[1:])
+rest_off, rest_pull, rest_times = follow(direct, path[1:])
 motion = sinew.build(result.scene())
 move_off, move_pull, times = follow(motion, path[1:])
 
@@ -52,7 +52,6 @@ along = path[STEPS // 2 + 1] - path[STEPS // 2 - 1]
 across = np.cross(along, [0.0, 0.0, 1.0]) / np.linalg.norm(along)
 # Targets beside the path cannot be reached by one cable: the nearest point is kept, and said so.
 state, aside = direct.initial_state(), path[STEPS // 2] + 5e-3 * across
-
 for _ in range(20):
     report = sinew.step(direct, None, state, targets={"tip": aside})
 left = 1e3 * np.linalg.norm(state.output("tip") - aside)

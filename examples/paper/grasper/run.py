@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
@@ -48,8 +49,8 @@ for k, (name, rod) in enumerate(zip(FINGERS, seen.rods, strict=True)):
     hooke = YOUNG * RADIUS * np.hypot(rod.fields["bending_y"], rod.fields["bending_z"])[middle]
     most = int(by_shape.argmax())
     ratios.append(float(rod.fields["axial_stress"][0] / by_force))
-    tensions.append(float(rod.fields["axial_force"].min()))
-    bendings.append((float(by_shape[most]), float(rod.fields["bending_stress"][middle[most]]), float(np.abs(by_shape / by_shape.max() - hooke / by_shape.max()).max())))
+    tensions.append(rod.fields["axial_force"] / force)
+    bendings.append((float(by_shape[most]), float(rod.fields["bending_stress"][middle[most]]), float(np.abs(by_shape - hooke).max() / by_shape.max())))
     normal = run.signals[f"{name}.normal"][-1]
     rows.append(
         [name, f"{force:.2f}", f"{by_force / 1e6:.2f}", f"{rod.fields['axial_stress'][0] / 1e6:.2f}", f"{by_shape[most] / 1e6:.1f}",
@@ -62,12 +63,13 @@ result.table(
     rows,
 )
 touching = np.array([[run.signals[f"{name}.{axis}"][-1] for axis in "xyz"] for name in FINGERS])
+shares = [by_shape / (pull / area) for (by_shape, _, _), pull in zip(bendings, end.forces, strict=True)]
 result.say(
-    "Bending is most of the stress: that of a cable of half a millimetre that is bent to a radius of a few centimetres is ten times that of its pull. "
-    "A geometric cable knows neither."
+    f"Where it is bent most, bending adds {min(shares):.1f} to {max(shares):.1f} times the stress of the pull: a geometric cable knows nothing of it. As the fingers stand "
+    f"askew they lift the cube by {1e3 * (cube[at[2.0], 1] - cube[0, 1]):.1f} mm while they close, before the hand rises."
 )
 
-figure = plt.figure(figsize=(13, 7.2), layout="constrained")
+figure: Any = plt.figure(figsize=(13, 7.2), layout="constrained")
 top, bottom = figure.subfigures(2, 1, height_ratios=[1.5, 1.0])
 panels = top.subplots(1, len(SHOWN), sharex=True, sharey=True)
 for axes, (when, what) in zip(panels, SHOWN.items(), strict=True):
@@ -86,7 +88,7 @@ along, height = bottom.subplots(1, 2)
 for name, rod, color in zip(FINGERS, seen.rods, ("tab:blue", "tab:orange", "tab:green"), strict=True):
     along.step(1e3 * rod.abscissa, rod.von_mises / 1e6, where="post", color=color, label=f"{name}: von Mises")
     along.plot(1e3 * rod.abscissa, rod.fields["axial_stress"] / 1e6, ":", color=color, label=f"{name}: axial")
-along.set(xlabel="along the cable [mm]", ylabel="stress at 8 s [MPa]")
+along.set(xlabel="along the cable [mm]", ylabel="stress at 8 s [MPa]", ylim=(0, 430))
 along.legend(fontsize=8, ncols=3)
 height.plot(times, 1e3 * (cube[:, 1] - cube[0, 1]), "k", label="cube lifted [mm]")
 force_axis = height.twinx()
@@ -103,12 +105,12 @@ result.compare("friction carries it: vertical forces of the fingers at 8 s", flo
 result.check("sideways they cancel", float(np.hypot(*touching.sum(axis=0)[[0, 2]])), most=0.01 * WEIGHT, unit="N")
 cone = [np.sqrt(max(0.0, own @ own - n * n)) / (FRICTION * n) for own, n in zip(touching, [run.signals[f"{name}.normal"][-1] for name in FINGERS]) if n > 1e-6]
 result.check("no finger holds on by more than friction allows (share of it)", float(max(cone)), most=1.0)
-result.check("cables: axial stress at the base over pull / area, farthest from 1", max(abs(own - 1.0) for own in ratios), most=0.01)
-result.check("cables: bending stress over E r curvature of their shape, farthest from 1", max(abs(b / a - 1.0) for a, b, _ in bendings), most=0.02)
-result.check("cables: curvature of the shape beside the strain, off by (of the largest)", max(own for *_, own in bendings), most=0.02)
-result.check("no cable is pushed: least tension", min(tensions), least=0.0, unit="N")
+result.check("cables: axial stress at the base over pull / area, farthest from 1", max(abs(own - 1.0) for own in ratios), most=1e-6)
+result.check("cables: bending stress over E r curvature of their shape, farthest from 1", max(abs(b / a - 1.0) for a, b, _ in bendings), most=1e-4)
+result.check("cables: curvature of the shape beside the strain, off by (of the largest)", max(own for *_, own in bendings), most=1e-4)
+result.check("no friction in the channels: tension anywhere over the pull, farthest from 1", max(float(np.abs(own - 1.0).max()) for own in tensions), most=0.05)
 stiff = sinew.simulate(result.scene(), changes={**{f"rods.{name}_cable.material.young": "50 GPa" for name in FINGERS}, "time.duration": "2 s", "newton": {"limit": 30}}, progress=False)
 soft = sinew.simulate(result.scene(), changes={"time.duration": "2 s", "newton": {"limit": 30}}, progress=False)
 pulls = [float(own.signals["one_pull.force"][-1]) for own in (soft, stiff)]
-result.check("cables ten times as stiff must be pulled harder for the same way (ratio)", pulls[1] / pulls[0], least=1.05)
+result.check("cables ten times as stiff must be pulled harder for the same way (ratio)", pulls[1] / pulls[0], least=1.03)
 result.finish()

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
@@ -38,14 +39,14 @@ result.say(
     "is stiffer one way than the other, which twists the rod now one way, now the other."
 )
 
-figure = plt.figure(figsize=(13, 5.2), layout="constrained")
+figure: Any = plt.figure(figsize=(13, 5.2), layout="constrained")
 left, right = figure.subfigures(1, 2, width_ratios=[1.5, 1.0])
 panels = left.subplots(2, 2)
 most = max(float(np.abs(own.fields["torsion"]).max()) for own, _, _ in kept.values())
 for axes, angle in zip(panels.flat, (0, 90, 180, 270), strict=True):
-    own, _, seen = kept[angle]
+    own, _, block = kept[angle]
     view = View(axes, [0.5, -1.0, 0.6], up=[0, 0, 1])
-    view.solid(seen, alpha=0.35)
+    view.solid(block, alpha=0.35)
     colors = view.line(own.points, np.abs(own.fields["torsion"]), Normalize(0.0, most))
     view.balls(own.points[-1], "black", 4.0)
     axes.set(title=f"turned by {angle} deg", xticks=[], yticks=[])

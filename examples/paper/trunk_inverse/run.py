@@ -3,6 +3,7 @@
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import matplotlib.pyplot as plt
@@ -44,7 +45,8 @@ def bending(rod: sinew.RodSnapshot) -> Array:
 def follow(model: sinew.Model) -> tuple[Array, Array, list[float], list[tuple[float, sinew.Snapshot]]]:
     """Tips, pulls, times of steps [ms], and how it looks now and then."""
     state = model.initial_state()
-    tips, found, times, seen = [], [], [], []
+    tips, found, times = [], [], []
+    seen: list[tuple[float, sinew.Snapshot]] = []
     for k, target in enumerate(path[1:], 1):
         start = time.perf_counter()
         report = sinew.step(model, None, state, targets={"tip": target})
@@ -58,7 +60,7 @@ def follow(model: sinew.Model) -> tuple[Array, Array, list[float], list[tuple[fl
 
 
 goals = np.array(path[1:])
-rest_tips, rest_pulls, _, _ = follow(direct)
+rest_tips, rest_pulls = follow(direct)[:2]
 motion = sinew.build(result.scene())
 tips, found, times, shapes = follow(motion)
 off = {name: 1e3 * np.linalg.norm(own - goals, axis=1) for name, own in (("rest", rest_tips), ("motion", tips))}
@@ -73,7 +75,7 @@ result.table(
         ["a step, median [ms] (the paper: 82.33)", "", f"{np.median(times):.2f}"],
     ],
 )
-figure = plt.figure(figsize=(13, 5.8), layout="constrained")
+figure: Any = plt.figure(figsize=(13, 5.8), layout="constrained")
 top, bottom = figure.subfigures(2, 1, height_ratios=[0.6, 1.0])
 panels = top.subplots(1, len(shapes), sharex=True, sharey=True)
 most = max(float(bending(rod).max()) for _, seen in shapes for rod in seen.rods)
