@@ -50,8 +50,13 @@ class View:
         """A curve in the colours of what it bears at its points."""
         flat = self.flat(points)
         parts = LineCollection(
-            list(np.stack([flat[:-1], flat[1:]], axis=1)), array=0.5 * (values[:-1] + values[1:]), norm=norm, cmap=COLORS,
-            linewidths=width, capstyle="round", zorder=3,
+            list(np.stack([flat[:-1], flat[1:]], axis=1)),
+            array=0.5 * (values[:-1] + values[1:]),
+            norm=norm,
+            cmap=COLORS,
+            linewidths=width,
+            capstyle="round",
+            zorder=3,
         )
         self.axes.add_collection(parts)
         self.axes.autoscale_view()

@@ -44,6 +44,7 @@ def follow(model: sinew.Model, targets: list[Array]) -> tuple[Array, Array, list
         found.append(state.forces[0])
     return np.array(off), np.array(found), times
 
+
 rest_off, rest_pull, rest_times = follow(direct, path[1:])
 motion = sinew.build(result.scene())
 move_off, move_pull, times = follow(motion, path[1:])
@@ -58,7 +59,11 @@ left = 1e3 * np.linalg.norm(state.output("tip") - aside)
 nearest = 1e3 * min(np.linalg.norm(np.array(path) - aside, axis=1))
 
 result.table(
-    ["the tip follows its own curve (%.0f mm) in 4 s" % (1e3 * sum(np.linalg.norm(np.diff(path, axis=0), axis=1))), "at rest", "in motion, one QP per 10 ms"],
+    [
+        "the tip follows its own curve (%.0f mm) in 4 s" % (1e3 * sum(np.linalg.norm(np.diff(path, axis=0), axis=1))),
+        "at rest",
+        "in motion, one QP per 10 ms",
+    ],
     [
         ["off the target, largest [mm]", f"{rest_off.max():.2g}", f"{move_off.max():.2g}"],
         ["pull, largest [N]", f"{rest_pull.max():.3f}", f"{move_pull.max():.3f}"],

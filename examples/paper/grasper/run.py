@@ -50,22 +50,43 @@ for k, (name, rod) in enumerate(zip(FINGERS, seen.rods, strict=True)):
     most = int(by_shape.argmax())
     ratios.append(float(rod.fields["axial_stress"][0] / by_force))
     tensions.append(rod.fields["axial_force"] / force)
-    bendings.append((float(by_shape[most]), float(rod.fields["bending_stress"][middle[most]]), float(np.abs(by_shape - hooke).max() / by_shape.max())))
+    bendings.append(
+        (float(by_shape[most]), float(rod.fields["bending_stress"][middle[most]]), float(np.abs(by_shape - hooke).max() / by_shape.max()))
+    )
     normal = run.signals[f"{name}.normal"][-1]
     rows.append(
-        [name, f"{force:.2f}", f"{by_force / 1e6:.2f}", f"{rod.fields['axial_stress'][0] / 1e6:.2f}", f"{by_shape[most] / 1e6:.1f}",
-         f"{rod.fields['bending_stress'].max() / 1e6:.1f}", f"{rod.von_mises.max() / 1e6:.1f}", f"{normal:.3f}"]
+        [
+            name,
+            f"{force:.2f}",
+            f"{by_force / 1e6:.2f}",
+            f"{rod.fields['axial_stress'][0] / 1e6:.2f}",
+            f"{by_shape[most] / 1e6:.1f}",
+            f"{rod.fields['bending_stress'].max() / 1e6:.1f}",
+            f"{rod.von_mises.max() / 1e6:.1f}",
+            f"{normal:.3f}",
+        ]
     )
-result.say(f"The cube (40 mm, 30 g) is lifted by {lifted:.2f} mm and slips by {slip:.3f} mm in the five seconds that follow. What the cables bear then:")
+result.say(
+    f"The cube (40 mm, 30 g) is lifted by {lifted:.2f} mm and slips by {slip:.3f} mm in the five seconds that follow. What the cables bear then:"
+)
 result.table(
-    ["finger", "pull [N]", "pull / area [MPa]", "axial stress at the base [MPa]", "E r curvature of its shape, most [MPa]", "bending stress, most [MPa]",
-     "von Mises, most [MPa]", "presses the cube with [N]"],
+    [
+        "finger",
+        "pull [N]",
+        "pull / area [MPa]",
+        "axial stress at the base [MPa]",
+        "E r curvature of its shape, most [MPa]",
+        "bending stress, most [MPa]",
+        "von Mises, most [MPa]",
+        "presses the cube with [N]",
+    ],
     rows,
 )
 touching = np.array([[run.signals[f"{name}.{axis}"][-1] for axis in "xyz"] for name in FINGERS])
 shares = [by_shape / (pull / area) for (by_shape, _, _), pull in zip(bendings, end.forces, strict=True)]
 result.say(
-    f"Where it is bent most, bending adds {min(shares):.1f} to {max(shares):.1f} times the stress of the pull: a geometric cable knows nothing of it. As the fingers stand "
+    f"Where it is bent most, bending adds {min(shares):.1f} to {max(shares):.1f} times the stress of the pull: a geometric cable knows nothing of "
+    "it. As the fingers stand "
     f"askew they lift the cube by {1e3 * (cube[at[2.0], 1] - cube[0, 1]):.1f} mm while they close, before the hand rises."
 )
 
@@ -103,13 +124,23 @@ result.compare("the hand rises by 50 mm, the cube by", lifted, 50.0, 2e-3, "mm")
 result.check("then it slips in 5 s", slip, most=1.0, unit="mm")
 result.compare("friction carries it: vertical forces of the fingers at 8 s", float(touching[:, 1].sum()), WEIGHT, 0.01, "N", "its weight")
 result.check("sideways they cancel", float(np.hypot(*touching.sum(axis=0)[[0, 2]])), most=0.01 * WEIGHT, unit="N")
-cone = [np.sqrt(max(0.0, own @ own - n * n)) / (FRICTION * n) for own, n in zip(touching, [run.signals[f"{name}.normal"][-1] for name in FINGERS]) if n > 1e-6]
+cone = [
+    np.sqrt(max(0.0, own @ own - n * n)) / (FRICTION * n)
+    for own, n in zip(touching, [run.signals[f"{name}.normal"][-1] for name in FINGERS])
+    if n > 1e-6
+]
 result.check("no finger holds on by more than friction allows (share of it)", float(max(cone)), most=1.0)
 result.check("cables: axial stress at the base over pull / area, farthest from 1", max(abs(own - 1.0) for own in ratios), most=1e-6)
 result.check("cables: bending stress over E r curvature of their shape, farthest from 1", max(abs(b / a - 1.0) for a, b, _ in bendings), most=1e-4)
 result.check("cables: curvature of the shape beside the strain, off by (of the largest)", max(own for *_, own in bendings), most=1e-4)
-result.check("no friction in the channels: tension anywhere over the pull, farthest from 1", max(float(np.abs(own - 1.0).max()) for own in tensions), most=0.05)
-stiff = sinew.simulate(result.scene(), changes={**{f"rods.{name}_cable.material.young": "50 GPa" for name in FINGERS}, "time.duration": "2 s", "newton": {"limit": 30}}, progress=False)
+result.check(
+    "no friction in the channels: tension anywhere over the pull, farthest from 1", max(float(np.abs(own - 1.0).max()) for own in tensions), most=0.05
+)
+stiff = sinew.simulate(
+    result.scene(),
+    changes={**{f"rods.{name}_cable.material.young": "50 GPa" for name in FINGERS}, "time.duration": "2 s", "newton": {"limit": 30}},
+    progress=False,
+)
 soft = sinew.simulate(result.scene(), changes={"time.duration": "2 s", "newton": {"limit": 30}}, progress=False)
 pulls = [float(own.signals["one_pull.force"][-1]) for own in (soft, stiff)]
 result.check("cables ten times as stiff must be pulled harder for the same way (ratio)", pulls[1] / pulls[0], least=1.03)

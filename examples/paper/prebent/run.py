@@ -31,8 +31,14 @@ while state.time < 2.0 - 1e-9:
 rows = []
 for angle, (own, x, _) in sorted(kept.items()):
     tip = 1e3 * own.points[-1]
-    rows.append([angle, *[f"{v:.2f}" for v in tip], f"{1e3 * np.linalg.norm(x - rest, axis=1).max():.2f}",
-                 f"{own.fields['torsion'].min():.2f} to {own.fields['torsion'].max():.2f}"])
+    rows.append(
+        [
+            angle,
+            *[f"{v:.2f}" for v in tip],
+            f"{1e3 * np.linalg.norm(x - rest, axis=1).max():.2f}",
+            f"{own.fields['torsion'].min():.2f} to {own.fields['torsion'].max():.2f}",
+        ]
+    )
 result.table(["turned [deg]", "rod's end x [mm]", "y [mm]", "z [mm]", "block moves, most [mm]", "torsion along the rod [1/m]"], rows)
 result.say(
     f"The torque of the turning motor goes to and fro, up to {1e6 * np.abs(torques).max():.0f} uN m: the block is held at its bottom alone and "
@@ -60,7 +66,11 @@ result.picture(figure, "prebent.png", "The rod in the block, and its torsion, as
 
 sides = {angle: own.points[-1, 1:] - 0.01 for angle, (own, _, _) in kept.items()}
 result.check("pushed in: the block moves", 1e3 * np.linalg.norm(kept[0][1] - rest, axis=1).max(), least=1.0, unit="mm")
-result.check("turned by half: the rod's end is on the other side (cosine)", float(sides[0] @ sides[180] / np.linalg.norm(sides[0]) / np.linalg.norm(sides[180])), most=-0.99)
+result.check(
+    "turned by half: the rod's end is on the other side (cosine)",
+    float(sides[0] @ sides[180] / np.linalg.norm(sides[0]) / np.linalg.norm(sides[180])),
+    most=-0.99,
+)
 result.check("turned by a full circle: the rod's end is back", 1e3 * float(np.linalg.norm(sides[360] - sides[0])), most=1e-3, unit="mm")
 rod, _, _ = kept[90]
 first, second = np.interp(rod.abscissa[-1] / 48 * np.array([0.5, 1.5]), rod.abscissa, rod.fields["torsion"])  # of sections: means

@@ -59,9 +59,15 @@ result.picture(figure, "radius.png", "The finger with cables of 0.5 to 3 mm pull
 
 by_force, by_pull = moved
 thin, thick = by_force[0], by_force[-1]
-result.check("the same force: every thicker cable turns less (largest ratio)", max(b["turned"] / a["turned"] for a, b in zip(by_force, by_force[1:])), most=0.5)
-result.check("the same pull: every thicker cable turns less (largest ratio)", max(b["turned"] / a["turned"] for a, b in zip(by_pull, by_pull[1:])), most=0.75)
-result.check("the same pull: every thicker cable needs more force (least ratio)", min(b["force"] / a["force"] for a, b in zip(by_pull, by_pull[1:])), least=1.0)
+result.check(
+    "the same force: every thicker cable turns less (largest ratio)", max(b["turned"] / a["turned"] for a, b in zip(by_force, by_force[1:])), most=0.5
+)
+result.check(
+    "the same pull: every thicker cable turns less (largest ratio)", max(b["turned"] / a["turned"] for a, b in zip(by_pull, by_pull[1:])), most=0.75
+)
+result.check(
+    "the same pull: every thicker cable needs more force (least ratio)", min(b["force"] / a["force"] for a, b in zip(by_pull, by_pull[1:])), least=1.0
+)
 result.check("3 mm bends no more: it turns", thick["turned"], least=0.0, most=1.0, unit="deg")
 result.check("3 mm: the silicone is compressed: of the tip's way, straight back", thick["back"] / thick["tip"], least=0.95)
 result.check("0.5 mm: it bends: of the tip's way, straight back", thin["back"] / thin["tip"], most=0.75)

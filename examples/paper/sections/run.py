@@ -52,8 +52,14 @@ tips = {count: state.output("tip") for count, state in states.items()}
 result.table(
     ["sections", *[f"target at {1e3 * s:.0f} mm [mm]" for s in TARGETS], "largest [mm]", "tip off [mm]", "force [N]", "bending: correlation with 80"],
     [
-        [count, *[f"{e:.3f}" for e in errors[count]], f"{largest[count]:.3f}", f"{1e3 * np.linalg.norm(tips[count] - tips[80]):.3f}",
-         f"{states[count].forces[0]:.3f}", f"{alike[count]:.3f}"]
+        [
+            count,
+            *[f"{e:.3f}" for e in errors[count]],
+            f"{largest[count]:.3f}",
+            f"{1e3 * np.linalg.norm(tips[count] - tips[80]):.3f}",
+            f"{states[count].forces[0]:.3f}",
+            f"{alike[count]:.3f}",
+        ]
         for count in COUNTS
     ],
 )

@@ -149,9 +149,25 @@ mesh_gap = 1e3 * float(np.linalg.norm(finer.markers - cases["solid", "before"][2
 WORDS = {"before": "as first assumed", "theirs": "as SoRoMoX identified", "fitted": "E fitted here"}
 PUBLISHED = {"before": f"{1e3 * DATA['published_rmse']['before']:.1f}", "theirs": f"{1e3 * DATA['published_rmse']['after']:.1f}", "fitted": ""}
 result.table(
-    ["model", "material", "E [kPa]", "density [kg/m3]", *[f"marker at {1e3 * own['s']:.0f} mm" for own in DATA["markers"]], "RMSE [mm]", "published [mm]"],
     [
-        [KINDS[kind], WORDS[name], f"{young / 1e3:.0f}", f"{density:.0f}", *[f"{e:.1f}" for e in np.sqrt((found.errors**2).mean(axis=0))], f"{found.rmse:.1f}", PUBLISHED[name]]
+        "model",
+        "material",
+        "E [kPa]",
+        "density [kg/m3]",
+        *[f"marker at {1e3 * own['s']:.0f} mm" for own in DATA["markers"]],
+        "RMSE [mm]",
+        "published [mm]",
+    ],
+    [
+        [
+            KINDS[kind],
+            WORDS[name],
+            f"{young / 1e3:.0f}",
+            f"{density:.0f}",
+            *[f"{e:.1f}" for e in np.sqrt((found.errors**2).mean(axis=0))],
+            f"{found.rmse:.1f}",
+            PUBLISHED[name],
+        ]
         for (kind, name), (young, density, found) in cases.items()
     ],
 )
@@ -178,20 +194,32 @@ for axes, (kind, name) in zip(panels, [(kind, name) for kind in KINDS for name i
     axes.set(title=f"{KINDS[kind]}\nE = {young / 1e3:.0f} kPa: {found.rmse:.1f} mm", xlabel="towards the tendon [mm]")
 panels[0].set_ylabel("z [mm]")
 panels[0].legend(
-    handles=[*[Line2D([], [], color=color, lw=2, label=f"{tension:.2f} N") for tension, color in zip(TENSIONS, colors, strict=True)],
-             Line2D([], [], ls="", marker="o", color="gray", mec="black", label="marker, measured"), Line2D([], [], ls="", marker="+", color="gray", mew=2, label="marker, computed")],
-    fontsize=7, loc="upper right",
+    handles=[
+        *[Line2D([], [], color=color, lw=2, label=f"{tension:.2f} N") for tension, color in zip(TENSIONS, colors, strict=True)],
+        Line2D([], [], ls="", marker="o", color="gray", mec="black", label="marker, measured"),
+        Line2D([], [], ls="", marker="+", color="gray", mew=2, label="marker, computed"),
+    ],
+    fontsize=7,
+    loc="upper right",
 )
-result.picture(figure, "tendon_arm.png", "The arm under four tensions, as a rod and as a solid, before and after its modulus is fitted, beside the markers")
+result.picture(
+    figure, "tendon_arm.png", "The arm under four tensions, as a rod and as a solid, before and after its modulus is fitted, beside the markers"
+)
 squeezed = 100.0 * -min(float(state.snapshot().rods[0].fields["elongation"].min()) for state in cases["rod", "before"][2].states)
 result.say(
-    f"Before anything is fitted, the tendon squeezes the thin end of the first link by up to {squeezed:.0f} %. A solid grows thicker there, and stiffer; cross-sections of a rod do not. The solid "
+    f"Before anything is fitted, the tendon squeezes the thin end of the first link by up to {squeezed:.0f} %. A solid grows thicker there, and "
+    "stiffer; cross-sections of a rod do not. The solid "
     "therefore bends less at the same E, and is fitted by a lower one."
 )
 for kind in KINDS:
     young, density, found = cases[kind, "fitted"]
     before = cases[kind, "before"][2].rmse
-    result.check(f"{KINDS[kind]}: E fitted, RMSE beside the published one after identification", found.rmse, most=1e3 * DATA["published_rmse"]["after"], unit="mm")
+    result.check(
+        f"{KINDS[kind]}: E fitted, RMSE beside the published one after identification",
+        found.rmse,
+        most=1e3 * DATA["published_rmse"]["after"],
+        unit="mm",
+    )
     result.check(f"{KINDS[kind]}: as first assumed, RMSE beside the published one", before, most=1e3 * DATA["published_rmse"]["before"], unit="mm")
     result.check(f"{KINDS[kind]}: fitting takes away, of the RMSE", 100.0 * (1.0 - found.rmse / before), least=60.0, unit="%")
 aside = min(pulled("rod", factor * cases["rod", "fitted"][0], BEFORE["rho"]).rmse for factor in (0.95, 1.05))
