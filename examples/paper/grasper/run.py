@@ -122,7 +122,7 @@ result.picture(figure, "grasper.png", "The grasper comes down, closes, lifts and
 
 result.compare("the hand rises by 50 mm, the cube by", lifted, 50.0, 2e-3, "mm")
 result.check("then it slips in 5 s", slip, most=1.0, unit="mm")
-result.compare("friction carries it: vertical forces of the fingers at 8 s", float(touching[:, 1].sum()), WEIGHT, 0.01, "N", "its weight")
+result.compare("the fingers carry it: their vertical forces at 8 s", float(touching[:, 1].sum()), WEIGHT, 0.01, "N", "its weight")
 result.check("sideways they cancel", float(np.hypot(*touching.sum(axis=0)[[0, 2]])), most=0.01 * WEIGHT, unit="N")
 cone = [
     np.sqrt(max(0.0, own @ own - n * n)) / (FRICTION * n)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import matplotlib.pyplot as plt
 import numpy as np
 from paper import Result, smooth
 from pictures import Array
@@ -105,11 +106,12 @@ def measured(case: Case, model: sinew.Model) -> tuple[Array, sinew.State, float]
     return np.array(times), state, off
 
 
-lines = []
+lines, ours = [], []
 for case in cases:
     model = sinew.build(case.scene, changes={"newton": 1})
     times, state, off = measured(case, model)
     clock, used = np.median(times, axis=0)
+    ours.append(float(used))
     cells = sum(len(own.cells["tetra"]) for own in state.snapshot().solids)
     sections = sum((len(own.q) - 1) // 3 for own in state.rods.values())  # a base that moves along, three strains a section
     points = sum(case.points)
@@ -130,6 +132,21 @@ result.say(
     "more row a point, for its place along the cable.)"
 )
 result.table(["robot", "tetrahedra", "sections", "points", "rows", "ms, by the clock", "ms, of the processor", "the paper, ms", "SOFA, ms"], lines)
+
+figure, axes = plt.subplots(figsize=(9, 4.6), layout="constrained")
+place = np.arange(len(cases))
+axes.barh(place - 0.26, ours, 0.26, color="tab:blue", label="here, time of the processor")
+for shift, color, label, told in (
+    (0.0, "tab:orange", "the paper (i7-8850H)", [own.paper for own in cases]),
+    (0.26, "gray", "SOFA (2.1 to 2.4 GHz Xeon)", [own.sofa for own in cases]),
+):
+    known = [k for k, text in enumerate(told) if text]
+    axes.barh(place[known] + shift, [float(told[k].split()[0]) for k in known], 0.26, color=color, label=label)
+axes.set(xscale="log", xlabel="a step [ms]", yticks=place, yticklabels=[own.name for own in cases])
+axes.invert_yaxis()
+axes.grid(True, axis="x", which="both", alpha=0.3)
+axes.legend(fontsize=8)
+result.picture(figure, "table1.png", "Times of a step, of the paper and of SOFA")
 
 REFERENCES = {  # [mm] of the tip
     ("cosserat", 5): {"SOFA": (79.69, 14.24, 0.34), "a prototype": (79.63, 14.21, 0.54)},
