@@ -86,8 +86,7 @@ touching = np.array([[run.signals[f"{name}.{axis}"][-1] for axis in "xyz"] for n
 shares = [by_shape / (pull / area) for (by_shape, _, _), pull in zip(bendings, end.forces, strict=True)]
 result.say(
     f"Where it is bent most, bending adds {min(shares):.1f} to {max(shares):.1f} times the stress of the pull: a geometric cable knows nothing of "
-    "it. As the fingers stand "
-    f"askew they lift the cube by {1e3 * (cube[at[2.0], 1] - cube[0, 1]):.1f} mm while they close, before the hand rises."
+    f"it. As the fingers stand askew they lift the cube by {1e3 * (cube[at[2.0], 1] - cube[0, 1]):.1f} mm while they close, before the hand rises."
 )
 
 figure: Any = plt.figure(figsize=(13, 7.2), layout="constrained")

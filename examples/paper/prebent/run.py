@@ -41,8 +41,8 @@ for angle, (own, x, _) in sorted(kept.items()):
     )
 result.table(["turned [deg]", "rod's end x [mm]", "y [mm]", "z [mm]", "block moves, most [mm]", "torsion along the rod [1/m]"], rows)
 result.say(
-    f"The torque of the turning motor goes to and fro, up to {1e6 * np.abs(torques).max():.0f} uN m: the block is held at its bottom alone and "
-    "is stiffer one way than the other, which twists the rod now one way, now the other."
+    f"The torque of the turning motor goes to and fro, up to {1e6 * np.abs(torques).max():.0f} uN m: the block is held at its bottom alone and is "
+    "stiffer one way than the other, which twists the rod now one way, now the other."
 )
 
 figure: Any = plt.figure(figsize=(13, 5.2), layout="constrained")

@@ -100,7 +100,6 @@ result.say("*Sections.* How far the tip is from where four times the largest num
 result.table(["strains in a section", "sections", "tip off [mm]", "order"], rows)
 
 # Mesh and points
-names = {1: "linear", 2: "quadratic"}
 PIECES = (1, 2, 4, 8)
 MADE = [(1, 0), (1, 1), (1, 2), (2, 0), (2, 1)]  # order, level
 FINEST = (2, 1)
@@ -119,7 +118,10 @@ result.table(
 )
 halves = [4.0, 2.0, 1.0]
 mesh_errors = {p: [float(np.linalg.norm(rest[own, p][0] - rest[FINEST, p][0])) for own in MADE[:-1]] for p in PIECES}
-result.say(f"How far the tip is from that of the finest ({counted[FINEST]}) [mm], and orders from one mesh of linear tetrahedra to the next:")
+result.say(
+    f"How far the tip is from that of the finest ({counted[FINEST]}) [mm], which is itself still some mm short of its limit, and "
+    "orders from one linear mesh to the next:"
+)
 result.table(
     ["points", *[counted[own] for own in MADE[:-1]], "orders"],
     [[6 * p + 1, *[f"{e:.2f}" for e in mesh_errors[p]], ", ".join(orders(halves, mesh_errors[p][:3])[1:])] for p in PIECES],
@@ -127,22 +129,19 @@ result.table(
 squeeze = {p: 100.0 * (rest[FINEST, p][1] / rest[(2, 0), p][1] - 1.0) for p in PIECES}
 result.say(
     "Linear tetrahedra are far too stiff (at a Poisson's ratio of 0.45 each has one strain to bend with, see `docs/elements.md`): the mesh as it "
-    "is lets the tip travel half as far as it should. "
-    "They converge, at about first order: two is what they promise where stress is smooth, and here it has peaks in the corners of the gaps and at "
-    "every point of the cable. "
-    "Quadratic ones on the coarsest mesh are nearer than linear ones on the finest. "
-    "What does not converge is the place where a point pulls: a force at a point goes the deeper into a solid the smaller its elements (as 1 / "
-    "h), so from one quadratic mesh to the next the cable is pulled "
-    f"out by {squeeze[1]:.0f} % more with 7 points and by {squeeze[8]:.0f} % with 49 (the anchor is one point in both), the tip travels by "
-    f"{100 * (travel[FINEST, 1] / travel[(2, 0), 1] - 1):.0f} and {100 * (travel[FINEST, 8] / travel[(2, 0), 8] - 1):.0f} % more. Elements smaller "
-    "than the cable is thick make no sense."
+    "is lets the tip travel half as far as it should. They converge, at about first order: two is what they promise where stress is smooth, and "
+    "here it has peaks in the corners of the gaps and at every point of the cable. Quadratic ones on the coarsest mesh are nearer than linear "
+    "ones on the finest. What does not converge is the place where a point pulls: a force at a point goes the deeper into a solid the smaller "
+    f"its elements (as 1 / h), so from one quadratic mesh to the next the cable is pulled out by {squeeze[1]:.0f} % more with 7 points and by "
+    f"{squeeze[8]:.0f} % with 49 (the anchor is one point in both), the tip travels by {100 * (travel[FINEST, 1] / travel[(2, 0), 1] - 1):.0f} "
+    f"and {100 * (travel[FINEST, 8] / travel[(2, 0), 8] - 1):.0f} % more. Elements smaller than the cable is thick make no sense."
 )
 result.say(
-    "More points make the finger stiffer on every mesh: two or more in a rib turn the cable with it, and only what lies in the gaps can bend. "
-    f"It is the cable's own stiffness that tells: one of half the radius loses {100 * (1 - thin[1] / thin[0]):.0f} % of the travel from 7 to 49 "
+    "More points make the finger stiffer on every mesh: two or more in a rib turn the cable with it, and only what lies in the gaps can bend. It "
+    f"is the cable's own stiffness that tells: one of half the radius loses {100 * (1 - thin[1] / thin[0]):.0f} % of the travel from 7 to 49 "
     f"points on quadratic elements, where this one loses {100 * (1 - travel[(2, 0), 8] / travel[(2, 0), 1]):.0f} %. On linear tetrahedra there is "
-    "a second reason, which goes away "
-    "as they are refined: an element with two points of its own stays straight, and so must the cable (`docs/points.md`)."
+    "a second reason, which goes away as they are refined: an element with two points of its own stays straight, and so must the cable "
+    "(`docs/points.md`)."
 )
 for own in MADE:
     by_points.semilogx([6 * p + 1 for p in PIECES], [travel[own, p] for p in PIECES], "os"[own[0] - 1] + "-", label=counted[own])
@@ -198,8 +197,8 @@ by_step.set(xlabel="time step [ms]", ylabel="tip off [mm]", title="time step, in
 result.say("*Time step.* How far the tip is, in the midst of a pull of 10 mm in 0.5 s, from where steps of 0.32 and 0.64 ms head for:")
 result.table(["steps", "h [ms]", "tip off [mm]", "order"], rows)
 result.say(
-    "Steps that converge head for the first order of backward Euler, from errors that are small at any step. One linearisation a step has it, too, "
-    "with errors more than a hundred times as large (`docs/newton.md`)."
+    "Steps that converge head for the first order of backward Euler, from errors that are small at any step. One linearisation a step has it, "
+    "too, with errors more than a hundred times as large (`docs/newton.md`)."
 )
 for axes, place in zip(panels.flat, ("upper right", "lower left", "lower right", "center right"), strict=True):
     axes.grid(True, which="both", alpha=0.3)

@@ -208,11 +208,10 @@ result.picture(
 squeezed = 100.0 * -min(float(state.snapshot().rods[0].fields["elongation"].min()) for state in cases["rod", "before"][2].states)
 result.say(
     f"Before anything is fitted, the tendon squeezes the thin end of the first link by up to {squeezed:.0f} %. A solid grows thicker there, and "
-    "stiffer; cross-sections of a rod do not. "
-    "That and what is left of the mesh's own stiffness (below) make the solid bend less at the same E, and its fitted E lower. "
-    "The published figures are of all that was measured, ours of the sixteen positions of one tendon that are at hand; the cables' stiffness is a "
-    "guess. "
-    "The marker at 129 mm stays some 10 mm off at any E: that is a matter of where it sits, not of how stiff the arm is."
+    "stiffer; cross-sections of a rod do not. That and what is left of the mesh's own stiffness (below) make the solid bend less at the same E, "
+    "and its fitted E lower. The published figures are of all that was measured, ours of the sixteen positions of one tendon that are at hand; "
+    "the cables' stiffness is a guess. The marker at 129 mm stays some 10 mm off at any E: that is a matter of where it sits, not of how stiff "
+    "the arm is."
 )
 for kind in KINDS:
     young, density, found = cases[kind, "fitted"]
