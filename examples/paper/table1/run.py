@@ -16,6 +16,7 @@ from pictures import Array
 import sinew
 
 STEPS = 300
+AUTHORS = [0.0, 0.015, 0.030, 0.045, 0.060, 0.066, 0.081]  # [m] of the finger's cable: ends of its sections, and its points
 result = Result(__file__, "Table I: sizes and times of a step")
 FINGER, TRUNK = result.scene("../finger_inverse/scene.yaml"), result.scene("../trunk_inverse/scene.yaml")
 GRASPER, COMPARISON = result.scene("../grasper/scene.yaml"), result.scene("comparison.yaml")
@@ -56,14 +57,19 @@ def slides(scene: sinew.Scene) -> list[sinew.Slide]:
     return [own for own in scene.couplings if isinstance(own, sinew.Slide)]
 
 
-def laid(sections: int, points: int, length: float) -> Callable[[sinew.Scene], None]:
-    """Every cable, of this length [m], in so many sections, held at so many points at equal distances, the last its tip."""
+def evenly(count: int, length: float) -> list[float]:
+    """So many points at equal distances, the last one at the end. [m]"""
+    return [length * (k + 1) / count for k in range(count)]
+
+
+def laid(sections: int | list[float], points: list[float]) -> Callable[[sinew.Scene], None]:
+    """Every cable in so many sections, or with these ends of them, held at these points [m]."""
 
     def change(scene: sinew.Scene) -> None:
         for rod in scene.rods.values():
             rod.sections = sections
         for own in slides(scene):
-            own.points = [length * (k + 1) / points for k in range(points)]
+            own.points = points
 
     return change
 
@@ -74,11 +80,11 @@ def geometric(scene: sinew.Scene) -> None:
 
 cases = [
     Case("finger, authors' layout", 389, 6, [7], "4.31 (inverse)", "", of_file(FINGER), True),
-    Case("finger, as printed", 389, 15, [15], "4.31 (inverse)", "8.3", of_file(FINGER, laid(15, 15, 0.081)), True),
+    Case("finger, as printed", 389, 15, [15], "4.31 (inverse)", "8.3", of_file(FINGER, laid(15, evenly(15, 0.081))), True),
     Case("trunk, authors' layout", 1972, 80, [10] * 4, "82.33 (inverse)", "62", of_file(TRUNK), True),
-    Case("trunk, as printed", 1972, 84, [21] * 4, "82.33 (inverse)", "", of_file(TRUNK, laid(21, 21, 0.185368)), True),
-    Case("grasper, authors' layout", 1167, 18, [7] * 3, "35.97 (direct, contact)", "14.9 to 19", of_file(GRASPER, laid(6, 7, 0.081))),
-    Case("grasper, as printed", 1167, 45, [15] * 3, "35.97 (direct, contact)", "", of_file(GRASPER, laid(15, 15, 0.081))),
+    Case("trunk, as printed", 1972, 84, [21] * 4, "82.33 (inverse)", "", of_file(TRUNK, laid(21, evenly(21, 0.185368))), True),
+    Case("grasper, authors' layout", 1167, 18, [7] * 3, "35.97 (direct, contact)", "14.9 to 19", of_file(GRASPER, laid(AUTHORS, AUTHORS))),
+    Case("grasper, as printed", 1167, 45, [15] * 3, "35.97 (direct, contact)", "", of_file(GRASPER, laid(15, evenly(15, 0.081)))),
     Case("finger, 8 sections", 389, 8, [9], "3.83 (direct)", "", of_file(COMPARISON)),
     Case("finger, geometric cable", 389, 0, [9], "2.54 (direct)", "1.5", of_file(COMPARISON, geometric)),
 ]
