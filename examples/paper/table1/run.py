@@ -129,6 +129,9 @@ for case in cases:
     if case.inverse:
         result.check(f"{case.name}: farthest from its targets", off, most=1.0, unit="mm")
         result.check(f"{case.name}: no cable pushes, least force at the end", float(state.forces.min()), least=0.0, unit="N")
+    if state.bodies:
+        lifted = 1e3 * float((state.output("cube") - model.initial_state().output("cube"))[1])
+        result.check(f"{case.name}: the cube is up with the hand, which rose by 50 mm, by", lifted, 50.0, 60.0, unit="mm")
     lines.append([case.name, cells, sections, points, case.rows, f"{clock:.3f}", f"{used:.3f}", case.paper, case.sofa])
 result.say(
     f"{processor()}, one thread, one linearised step of 10 ms (`newton: 1`) from Python, medians over a run, on a machine that others may use, "
