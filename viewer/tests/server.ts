@@ -33,7 +33,8 @@ export class Served {
 
   /** Starts `sinew view` and waits until it says where it is. */
   static async start(what: string, ...args: string[]): Promise<Served> {
-    const own = spawn(program, ["view", what, "--token", token, ...args], { cwd: root });
+    const known = args.includes("--token") ? [] : ["--token", token];
+    const own = spawn(program, ["view", what, ...known, ...args], { cwd: root });
     const address = await new Promise<string>((found, failed) => {
       let told = "";
       let wrong = "";
