@@ -10,6 +10,8 @@ import shutil
 import subprocess
 import sysconfig
 import tempfile
+import threading
+import warnings
 import webbrowser
 from collections.abc import Mapping
 from pathlib import Path
@@ -50,12 +52,23 @@ class Shown:
             raise InputError(wrong.strip() or "the page could not be served")
         self.address: str = match[1]
         """Where a browser finds it."""
+        threading.Thread(target=self._hear, daemon=True).start()
+
+    def _hear(self) -> None:
+        """What the program has to say: warnings of the scene, pages that were refused."""
+        assert self._process.stderr is not None
+        for line in self._process.stderr:
+            warnings.warn(line.strip().removeprefix("warning: "), stacklevel=1)
 
     def close(self) -> None:
-        """Ends it."""
+        """Ends it, after the step that it is making, or five seconds."""
         if self._process.poll() is None:
             self._process.terminate()
-        self._process.communicate()
+            try:
+                self._process.wait(5)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
         self._folder.cleanup()
         atexit.unregister(self.close)
 
@@ -94,6 +107,9 @@ def show(
     elif isinstance(what, str | os.PathLike):
         arguments.append(os.fspath(what))
     else:
+        if not isinstance(what, Scene | Mapping):
+            folder.cleanup()
+            raise TypeError(f"show: a scene, its file, the folder of a run, or a run, not {what!r}")
         scene = what if isinstance(what, Scene) else Scene.from_tree(what)
         meshes: dict[str, bytes] = {}
         tree = scene._tree(meshes)

@@ -269,3 +269,5 @@ def test_what_is_shown_is_served(kind: str, finger: Path, tmp_path: Path, progra
 def test_what_cannot_be_shown_is_told(tmp_path: Path, program: str) -> None:
     with pytest.raises(sinew.InputError, match="nowhere"):
         sinew.show(tmp_path / "nowhere.yaml", browser=False)
+    with pytest.raises(TypeError, match="not 42"):
+        sinew.show(42, browser=False)  # type: ignore[arg-type]

@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 from conftest import EXAMPLES, ROOT
 
-CASES = sorted(file.parent for file in (EXAMPLES / "validation").glob("*/run.py"))
-QUICK = {"circle", "slope", "tendon", "spring", "cook_membrane", "elastica"}
+CASES = sorted(file.parent for group in ("validation", "paper") for file in (EXAMPLES / group).glob("*/run.py"))
+QUICK = {"circle", "slope", "tendon", "spring", "cook_membrane", "elastica", "prebent", "sections"}
 """Some seconds in all; one of each kind of thing."""
+MESHES = [Path(own) for own in [os.environ.get("SINEW_PAPER_MESHES", "")] if own] + [EXAMPLES / "paper" / "meshes", ROOT.parent / "shared" / "meshes"]
 DOSSIER = ROOT / "scripts" / "make_dossier"
 
 
@@ -22,33 +23,39 @@ DOSSIER = ROOT / "scripts" / "make_dossier"
 )
 def test_case(case: Path) -> None:
     pytest.importorskip("matplotlib")
+    if case.parent.name == "paper" and not any((own / "trunk.vtk").exists() for own in MESHES):
+        pytest.skip("the paper's meshes are not here")
     told = subprocess.run([sys.executable, case / "run.py"], capture_output=True, text=True, check=False)
     assert told.returncode == 0, told.stdout + told.stderr
     assert "holds" in told.stdout
 
 
 def test_every_case_has_a_page_with_what_we_get() -> None:
-    assert len(CASES) >= 20
+    assert len(CASES) >= 30
     assert {own.name for own in CASES} >= QUICK
     for case in CASES:
         page = (case / "README.md").read_text()
         between = page.split("<!-- what we get -->")[1].split("<!-- end -->")[0]
         assert "| asserted |" in between, f"{case.name}: run it with --write"
-        assert f"examples/validation/{case.name}/run.py" in page
+        assert f"examples/{case.parent.name}/{case.name}/run.py" in page
 
 
-@pytest.mark.parametrize("script", [*CASES, EXAMPLES / "validation" / "validation.py", EXAMPLES / "dossier.py", DOSSIER], ids=lambda own: own.name)
+SCRIPTS = [EXAMPLES / "validation" / "validation.py", EXAMPLES / "paper" / "paper.py", EXAMPLES / "paper" / "pictures.py", EXAMPLES / "dossier.py", DOSSIER]
+
+
+@pytest.mark.parametrize("script", [*CASES, *SCRIPTS], ids=lambda own: own.name)
 @pytest.mark.slow
 def test_types(script: Path) -> None:
     pytest.importorskip("mypy")
     file = script / "run.py" if script.is_dir() else script
+    group = EXAMPLES / ("paper" if EXAMPLES / "paper" in script.parents else "validation")
     told = subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "--config-file", ROOT / "pyproject.toml", file],
         capture_output=True,
         text=True,
         check=False,
-        cwd=EXAMPLES / "validation",
-        env={**os.environ, "MYPYPATH": f"{EXAMPLES}:{EXAMPLES / 'validation'}"},
+        cwd=group,
+        env={**os.environ, "MYPYPATH": f"{EXAMPLES}:{group}"},
     )
     assert told.returncode == 0, told.stdout + told.stderr
 
