@@ -27,6 +27,7 @@ NOT_RUN = {
     "docs/python.md": 1,
     "docs/tutorials/finger.md": 1,
     "docs/tutorials/python.md": 1,
+    "docs/validation.md": 1,
     "python/README.md": 1,
     "viewer/README.md": 1,
 }

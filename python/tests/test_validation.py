@@ -127,4 +127,4 @@ def test_nothing_is_hidden(faults: dict[str, str], code: int, shown: str, tmp_pa
     assert shown in text
     assert "Waits for pneumatic chambers with fibres" in text
     for case in CASES:
-        assert f"../examples/validation/{case.name}/README.md" in text or case.name in faults.get("left_out", "")
+        assert f"../examples/{case.parent.name}/{case.name}/README.md" in text or case.name in faults.get("left_out", "")
