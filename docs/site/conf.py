@@ -27,7 +27,7 @@ project = "Sinew"
 html_title = "Sinew"
 root_doc = "README"
 include_patterns = ["*.md", "docs/*.md", "docs/**/*.md", "src/sinew/*/README.md", "examples/**/README.md", "*/README.md"]
-exclude_patterns = ["build", "out", "tests"]
+exclude_patterns = ["build", "out", "tests", ".*", "**/.*", "**/node_modules"]
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton"]
 
 # What README.md does not say: the pages and their order. A pattern stands for all files it matches, which may be none.
