@@ -134,6 +134,7 @@ export class View {
   private size = 1;
   private colors = table("viridis");
   private moved = true;
+  private placed = false; // the camera, for what the first frame shows
   private besides = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -251,7 +252,7 @@ export class View {
     if (!same) {
       this.controls.dispose();
       this.controls = this.orbit();
-      this.preset("corner");
+      this.placed = false;
     }
     this.apply();
   }
@@ -408,6 +409,8 @@ export class View {
     put(this.marks.geometry, frame.floats("points"));
     this.placeArrows(frame.floats("contacts"));
     this.paint();
+    if (!this.placed) this.preset("corner");
+    this.placed = true;
     this.moved = true;
   }
 
