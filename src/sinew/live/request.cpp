@@ -27,7 +27,7 @@ Json parse(std::string_view text) {
     deepest = std::max(deepest, depth);
     return depth <= 4;
   };
-  const Json all = Json::parse(text, shallow, false);
+  Json all = Json::parse(text, shallow, false);
   if (all.is_discarded() || deepest > 4 || !all.is_object()) refuse("do", "a message is a small JSON object");
   return all;
 }

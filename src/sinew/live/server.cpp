@@ -62,7 +62,7 @@ std::string_view text_of(beast::string_view own) { return {own.data(), own.size(
 
 asio::ip::address numeric(const std::string& address) {
   Error error;
-  const asio::ip::address own = asio::ip::make_address(address, error);
+  asio::ip::address own = asio::ip::make_address(address, error);
   if (error)
     throw InputError({.path = "--bind",
                       .value = address,
