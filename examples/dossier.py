@@ -138,8 +138,11 @@ class Result:
             shutil.copyfile(picture, self.folder / picture.name)
 
 
-def run_all(group: Path) -> None:
-    """Runs every run.py of a group of folders, one after the other; ends with 1 if one of them fails."""
+def run_all(group: Path, usage: str | None) -> None:
+    """Runs every run.py of a group of folders, one after the other; ends with 1 if one of them fails. `usage` is what --help tells."""
+    if any(option in sys.argv[1:] for option in ("-h", "--help")):
+        print(usage)
+        return
     begin = time.perf_counter()
     failed = []
     for script in sorted(group.glob("*/run.py")):
