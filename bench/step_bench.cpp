@@ -99,7 +99,7 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
   for (int i = 0; i < turns; ++i) {
     StepReport report;
     const double own =
-        timed(state, again, [&](State& at) { return report = advance(model, workspace, at, Evaluation::motion); });
+        timed(state, again, [&](State& at) { return report = advance(model, workspace, at, {Evaluation::motion}); });
     if (own < result.step) result.stages = report.times;
     result.step = std::min(result.step, own);
     result.reference = std::min(result.reference, factor());
@@ -107,7 +107,7 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
   Workspace shared = make_workspace(model, 2);
   for (int i = 0; i < turns; ++i)
     result.two = std::min(
-        result.two, timed(state, again, [&](State& at) { return advance(model, shared, at, Evaluation::motion); }));
+        result.two, timed(state, again, [&](State& at) { return advance(model, shared, at, {Evaluation::motion}); }));
   if (result.cells >= kLarge) {
     Scene floats = scene;
     floats.newton.precision = linalg::Precision::float32;
@@ -115,7 +115,7 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
     Workspace own = make_workspace(small);
     for (int i = 0; i < turns; ++i)
       result.single = std::min(
-          result.single, timed(state, again, [&](State& at) { return advance(small, own, at, Evaluation::motion); }));
+          result.single, timed(state, again, [&](State& at) { return advance(small, own, at, {Evaluation::motion}); }));
   }
   if (scene.rods[0].second.cable == Cable::geometric) return result;
   Scene pulled = scene;
@@ -129,9 +129,10 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
   }
   const Goal goal = {output_position(inverse, start, inverse.outputs[0]) + Vec3(0, 0.1e-3, -0.1e-3)};
   for (int i = 0; i < turns; ++i) {
-    result.inverse = std::min(result.inverse, timed(start, again, [&](State& at) {
-                                return inverse_step(inverse, own, goal, hold, scene.time.step, at, Evaluation::motion);
-                              }));
+    result.inverse =
+        std::min(result.inverse, timed(start, again, [&](State& at) {
+                   return inverse_step(inverse, own, goal, hold, scene.time.step, at, {Evaluation::motion});
+                 }));
     result.reference = std::min(result.reference, factor());
   }
   return result;

@@ -16,6 +16,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+import pages
 
 matplotlib.use("Agg")  # pictures are files here
 
@@ -56,10 +57,15 @@ class Result:
 
     def table(self, columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
         """A table of the page."""
-        self.parts.append(_table(columns, rows))
+        self.parts.append(pages.table(columns, rows))
 
     def picture(self, figure: Any, name: str, what: str) -> None:
         """A Matplotlib figure, kept as a file and shown in the page. `what` is told to who cannot see it."""
+        for axes in figure.axes:
+            if hasattr(axes, "zaxis"):
+                axes.locator_params(nbins=4)  # labels have room
+            elif axes.get_xscale() == "log" and axes.xaxis.get_transform().base == 2:
+                axes.xaxis.set_major_formatter("{x:g}")  # 8, not 2 to the power of 3
         figure.savefig(self.out / name, dpi=110)
         self.parts.append(f"![{what}]({name})")
 
@@ -158,7 +164,3 @@ def _commit() -> str:
     return told.stdout.strip() or "unknown"
 
 
-def _table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
-    lines += ["| " + " | ".join(str(value) for value in row) + " |" for row in rows]
-    return "\n".join(lines)

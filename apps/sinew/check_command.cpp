@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <set>
+
 #include "sinew/commands.hpp"
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/runs/loaded_scene.hpp"
@@ -37,6 +39,13 @@ void print_solid(const SolidModel& solid) {
              (solid.body.unknown.colwise().minCoeff().array() < 0).count(), solid.body.unknowns);
   fmt::print("  {:.4g} x {:.4g} x {:.4g} mm, {:.4g} cm^3, {:.4g} g ({:.4g} kg/m^3)\n", 1e3 * size.x(), 1e3 * size.y(),
              1e3 * size.z(), 1e6 * volume, 1e3 * solid.body.masses.sum(), solid.body.masses.sum() / volume);
+  std::set<std::pair<double, double>> moduli;
+  for (int cell = 0; cell < solid.body.elements(); ++cell) {
+    const auto [mu, lambda] = solid::lame(solid.body.of(cell).law);
+    const double young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), poisson = 0.5 * lambda / (lambda + mu);
+    if (moduli.insert({young, poisson}).second)
+      fmt::print("  Young's modulus {:.4g} kPa, Poisson's ratio {:.4g} at small strains\n", 1e-3 * young, poisson);
+  }
 }
 
 void print_rod(const RodModel& model) {

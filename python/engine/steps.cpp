@@ -190,7 +190,7 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
     StageTimes times;
     do {
       static_cast<StepReport&>(report) =
-          advance(model, *workspace, state, full ? Evaluation::full : Evaluation::motion, by);
+          advance(model, *workspace, state, {full ? Evaluation::full : Evaluation::motion}, by);
       times += report.times;
     } while (grid && accepted(report.status) && state.grid == before);
     report.times = times;

@@ -159,7 +159,8 @@ def shape(state: State | Snapshot, axes: Axes | None = None, *, colors: bool = T
     for axis, low, high in zip("xyz", least, most, strict=True):
         getattr(own, f"set_{axis}lim")(low, high)
         getattr(own, f"set_{axis}label")(f"{axis} [mm]")
-        getattr(own, f"{axis}axis").set_major_locator(mpl.ticker.MaxNLocator(4))
+        bins = max(round(4 * (high - low) / float((most - least).max())), 1)  # numbers of short axes have room, too
+        getattr(own, f"{axis}axis").set_major_locator(mpl.ticker.MaxNLocator(bins))
     own.set_box_aspect(most - least, zoom=0.82)
     own.set_title(snapshot.when or f"t = {snapshot.time:.4g} s")
     if snapshot.rods:

@@ -73,7 +73,7 @@ long pieces(const Scene& scene, const MeshReader& meshes, Evaluation evaluation,
   const Model model = build(scene, meshes);
   Workspace workspace = make_workspace(model, threads);
   State state = initial_state(model);
-  return pieces_of([&] { return advance(model, workspace, state, evaluation); });
+  return pieces_of([&] { return advance(model, workspace, state, {evaluation}); });
 }
 
 TEST(Memory, IsCounted) {

@@ -42,7 +42,7 @@ TEST(Grip, IsTheSameAsASpringOfTheScene) {
   for (int i = 0; i < 20; ++i) {
     Command command = command_at(model, x.time);
     command.grips = {{0, node, 50.0, model.solids[0].body.rest.col(node)}};
-    ASSERT_EQ(advance(model, a, x, Evaluation::full, {&command}).status, Status::converged);
+    ASSERT_EQ(advance(model, a, x, {}, {&command}).status, Status::converged);
     ASSERT_EQ(advance(other, b, y).status, Status::converged);
   }
   EXPECT_LT((x.solids[0].x - y.solids[0].x).norm(), 1e-12);
@@ -61,7 +61,7 @@ TEST(Grip, PullsByItsStiffnessAndTheWorkIsTold) {
   for (int i = 1; i <= 200; ++i) {  // slowly, so that the mean of forces is their work
     Command command = command_at(model, state.time);
     command.grips = {{0, node, 0.1 * i, to}};
-    ASSERT_EQ(advance(model, workspace, state, Evaluation::full, {&command}).status, Status::converged);
+    ASSERT_EQ(advance(model, workspace, state, {}, {&command}).status, Status::converged);
   }
   const Vec3 held = state.solids[0].reaction.reshaped(3, state.solids[0].reaction.size() / 3).rowwise().sum();
   const Vec3 pull = 20.0 * (to - state.solids[0].x.col(node));
@@ -76,7 +76,7 @@ TEST(Grip, IsGoneWhenItIsNotToldAgain) {
   State state = initial_state(model);
   Command command = command_at(model, 0.0);
   command.grips = {{0, farthest_node(model), 50.0, Vec3(0.1, 0.0, 0.05)}};
-  ASSERT_EQ(advance(model, workspace, state, Evaluation::full, {&command}).status, Status::converged);
+  ASSERT_EQ(advance(model, workspace, state, {}, {&command}).status, Status::converged);
   State other = state;
   ASSERT_EQ(advance(model, workspace, state).status, Status::converged);
   ASSERT_EQ(advance(model, fresh, other).status, Status::converged);

@@ -1,5 +1,6 @@
 #include "sinew/sim/step.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,7 +101,7 @@ TEST(Step, leaving_out_the_last_evaluation_changes_no_motion) {
   State full = initial_state(model), motion = full;
   for (int i = 0; i < 5; ++i) {
     ASSERT_TRUE(accepted(advance(model, whole, full).status));
-    ASSERT_TRUE(accepted(advance(model, half, motion, Evaluation::motion).status));
+    ASSERT_TRUE(accepted(advance(model, half, motion, {Evaluation::motion}).status));
     EXPECT_EQ(motion.solids[0].x, full.solids[0].x);
     EXPECT_EQ(motion.solids[0].v, full.solids[0].v);
     EXPECT_EQ(motion.rods[0].q, full.rods[0].q);
@@ -111,6 +112,25 @@ TEST(Step, leaving_out_the_last_evaluation_changes_no_motion) {
     EXPECT_EQ(motion.time, full.time);
   }
   EXPECT_GT(full.lambda.norm(), 0.0);
+}
+
+TEST(Step, whoever_steps_can_have_it_converge_whatever_the_scene_says) {
+  Scene scene = test::cable_block();
+  scene.newton.iterations = 1;
+  for (const Analysis analysis : {Analysis::dynamic, Analysis::quasi_static}) {
+    scene.analysis = analysis;
+    Scene same = scene;
+    same.newton.iterations = 0;
+    const Model once = build(scene, test::read_block), converged = build(same, test::read_block);
+    Workspace a = make_workspace(once), b = make_workspace(converged);
+    State x = initial_state(once), y = initial_state(converged);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(advance(once, a, x, {.converged = true}).status, Status::converged);
+      ASSERT_EQ(advance(converged, b, y).status, Status::converged);
+      EXPECT_EQ(pack(x), pack(y));
+    }
+    EXPECT_EQ(advance(once, a, x).status, Status::linearized);
+  }
 }
 
 TEST(Step, packing_and_unpacking_gives_the_same_state_and_continuation) {
@@ -467,4 +487,31 @@ TEST(Build, a_solid_that_nothing_holds_may_fly_but_has_no_equilibrium) {
 }
 
 }  // namespace
+TEST(Warnings, numbers_that_are_too_large_and_rods_beside_their_solid_are_told) {
+  const auto warnings = [](const auto& change) {
+    Scene scene = test::cable_block();
+    change(scene);
+    return build(scene, test::read_block).warnings;
+  };
+  EXPECT_THAT(warnings([](Scene&) {}), testing::IsEmpty());
+  EXPECT_THAT(warnings([](Scene& scene) {
+                scene.actuators[0].second.drive = Table{{0.0}, {2.0}};
+              }),
+              testing::ElementsAre("actuators.pull.displacement: 2 m is more than the rod's length of 0.06 m: numbers "
+                                   "without a unit are metres"));
+  EXPECT_THAT(warnings([](Scene& scene) {
+                scene.actuators[0].second.driven = Driven::force;
+                scene.actuators[0].second.drive = Table{{0.0}, {2.0}};
+              }),
+              testing::IsEmpty());
+  EXPECT_THAT(warnings([](Scene& scene) { scene.rods[0].second.section = Circle{0.04}; }),
+              testing::ElementsAre("rods.cable: its radius of 0.04 m is more than half its length of 0.06 m: numbers "
+                                   "without a unit are metres"));
+  EXPECT_THAT(warnings([](Scene& scene) {
+                for (Vec3& x : scene.rods[0].second.path) x.z() += 4 * mm;
+              }),
+              testing::ElementsAre("couplings.0.slide: 6 of 6 points lie outside solids.block, up to 0.002 m, and are "
+                                   "tied to the nearest elements: is the rod where it should be?"));
+}
+
 }  // namespace sinew

@@ -23,9 +23,14 @@ export function table(name: MapName): Float32Array {
   return all;
 }
 
+/** Colours that are evenly apart, as style sheets call them. */
+export function shades(name: MapName): string[] {
+  return maps[name].map((own) => `#${own}`);
+}
+
 /** What a style sheet calls it, from left to right. */
 export function gradient(name: MapName): string {
-  return `linear-gradient(to right, ${maps[name].map((own) => `#${own}`).join(", ")})`;
+  return `linear-gradient(to right, ${shades(name).join(", ")})`;
 }
 
 /** Six colours of Okabe and Ito, for things side by side. */

@@ -3,9 +3,9 @@
 import "uplot/dist/uPlot.min.css";
 import * as THREE from "three";
 
-import { gradient, quantity, spoken } from "./colors";
 import { download, make } from "./dom";
-import type { Any, FrameMessage, Quantity, Request, SceneMessage } from "./message";
+import { Capture, legendNodes, legendOf } from "./legend";
+import type { Any, FrameMessage, Request, SceneMessage } from "./message";
 import { Panel } from "./panel";
 import { Plots } from "./plots";
 import { connect, embedded, type Source } from "./source";
@@ -35,7 +35,7 @@ let scene: SceneMessage | null = null;
 let latest: FrameMessage | null = null;
 let fresh = false;
 let stiffness = 100;
-let film: MediaRecorder | null = null;
+let film: { recorder: MediaRecorder; capture: Capture } | null = null;
 let refusal = "";
 let over: { x: number; y: number } | null = null; // where the pointer is, if nobody has looked what is there
 
@@ -47,6 +47,37 @@ const ask = (request: Request): void => source?.ask(request);
 function askToShow(): void {
   const { solids, rods } = view.look;
   ask({ do: "show", solids: solids === "displacement" ? "" : solids, rods, energies: plots.energies() });
+}
+
+/** What is seen now, onto what is kept of it. */
+function captured(capture: Capture): void {
+  if (scene) capture.draw(legendOf(scene, view.look, view.ranges), view.look.map, latest?.head.when ?? "");
+}
+
+function picture(): void {
+  const capture = new Capture(canvas);
+  captured(capture);
+  capture.canvas.toBlob((blob) => blob && download("sinew.png", blob));
+}
+
+/** Begins a video, or ends it and saves it; returns whether it records now. */
+function video(): boolean {
+  if (film) {
+    film.recorder.stop();
+    film = null;
+    return false;
+  }
+  const type = ["video/webm", "video/mp4"].find((own) => MediaRecorder.isTypeSupported(own));
+  if (!type) return false;
+  const parts: Blob[] = [];
+  const capture = new Capture(canvas);
+  captured(capture);
+  const recorder = new MediaRecorder(capture.canvas.captureStream(60), { mimeType: type });
+  recorder.ondataavailable = (event) => parts.push(event.data);
+  recorder.onstop = () => download(type === "video/webm" ? "sinew.webm" : "sinew.mp4", new Blob(parts, { type }));
+  recorder.start();
+  film = { recorder, capture };
+  return true;
 }
 
 function togglePlots(): void {
@@ -65,21 +96,8 @@ const panel = new Panel(find("panel"), {
     showLegend();
   },
   camera: (preset) => view.preset(preset),
-  picture: () => canvas.toBlob((blob) => blob && download("sinew.png", blob)),
-  video() {
-    if (film) {
-      film.stop();
-      film = null;
-      return false;
-    }
-    const parts: Blob[] = [];
-    const type = ["video/webm", "video/mp4"].find((own) => MediaRecorder.isTypeSupported(own))!;
-    film = new MediaRecorder(canvas.captureStream(60), { mimeType: type });
-    film.ondataavailable = (event) => parts.push(event.data);
-    film.onstop = () => download(type === "video/webm" ? "sinew.webm" : "sinew.mp4", new Blob(parts, { type }));
-    film.start();
-    return true;
-  },
+  picture,
+  video,
   plots: togglePlots,
   help: () => help.showModal(),
   stiffness: (value) => (stiffness = value),
@@ -128,6 +146,7 @@ function tick(): void {
     tally.drawMs = mean(tally.drawMs, end - ready);
     tally.worstMs = Math.max(tally.worstMs, ready - begin);
     tally.draws += 1;
+    if (film) captured(film.capture);
   }
 }
 
@@ -153,24 +172,9 @@ function showStatus(): void {
 
 function showLegend(): void {
   if (!scene) return;
-  const { head } = scene;
-  const { look, ranges } = view;
-  const rows: Node[] = [];
-  const add = (kind: "solids" | "rods", fields: Quantity[]): void => {
-    const name = look[kind];
-    const range = ranges[kind];
-    if (!name || !range) return;
-    const unit = name === "displacement" ? "m" : fields.find((own) => own.name === name)!.unit;
-    rows.push(
-      make("span", { text: (head.solids.length > 0 && head.rods.length > 0 ? `${kind}: ` : "") + spoken(name) }),
-      make("i", { style: `background: ${gradient(look.map)}` }),
-      make("span", { text: `${quantity(range.least, unit)} … ${quantity(range.most, unit)}` }),
-    );
-  };
-  add("solids", head.solid_fields);
-  add("rods", head.rod_fields);
+  const rows = legendOf(scene, view.look, view.ranges);
   legend.hidden = rows.length === 0;
-  legend.replaceChildren(...rows);
+  legend.replaceChildren(...legendNodes(rows, view.look.map));
 }
 
 const listener = {
@@ -279,7 +283,7 @@ addEventListener("keydown", (event) => {
   else if (event.key === " ") panel.toggle();
   else if (event.key === ".") ask({ do: "step" });
   else if (event.key === "r" || event.key === "R") ask({ do: "reset" });
-  else if (event.key === "p" || event.key === "P") canvas.toBlob((blob) => blob && download("sinew.png", blob));
+  else if (event.key === "p" || event.key === "P") picture();
   else if (event.key === "g" || event.key === "G") togglePlots();
   else if (event.key === "h" || event.key === "H" || event.key === "?") help.showModal();
   else return;

@@ -5,6 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 import { palette, table, type MapName } from "./colors";
 import type { FrameMessage, SceneMessage, Vector } from "./message";
+import { RING, arrowsOf, axesShape, bend, bodyShape, label, pointsShape, put, rodShape, solidShape, targetShape, type Rod, type Solid } from "./shapes";
 
 export interface Look {
   solids: string; // "", "displacement" or a field
@@ -24,78 +25,11 @@ export interface Range {
   most: number;
 }
 
-interface Solid {
-  rest: Float32Array;
-  nodes: Uint32Array;
-  position: THREE.BufferAttribute;
-  color: THREE.BufferAttribute;
-  mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
-  edges: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
-  smooth: boolean;
-}
-
-interface Rod {
-  radius: Float32Array; // abscissa, radius
-  samples: number;
-  position: THREE.BufferAttribute;
-  normal: THREE.BufferAttribute;
-  color: THREE.BufferAttribute;
-  mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
-}
-
 export interface Hit {
   kind: "target" | "solid";
   number: number;
   node: number;
   point: THREE.Vector3;
-}
-
-const RING = 8;
-
-/** Edges of triangles, each once. */
-function edgesOf(triangles: Uint32Array): Uint32Array {
-  const seen = new Set<number>();
-  const all: number[] = [];
-  for (let i = 0; i < triangles.length; i += 3) {
-    for (let k = 0; k < 3; ++k) {
-      const a = triangles[i + k]!;
-      const b = triangles[i + ((k + 1) % 3)]!;
-      const key = Math.min(a, b) * 4194304 + Math.max(a, b);
-      if (seen.has(key)) continue;
-      seen.add(key);
-      all.push(a, b);
-    }
-  }
-  return new Uint32Array(all);
-}
-
-function floats(count: number): THREE.BufferAttribute {
-  const own = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
-  own.setUsage(THREE.DynamicDrawUsage);
-  return own;
-}
-
-/** White text on a dark label, always turned to who looks. */
-function label(text: string): THREE.Sprite {
-  const canvas = document.createElement("canvas");
-  const context = canvas.getContext("2d")!;
-  const font = "600 28px system-ui, sans-serif";
-  context.font = font;
-  const width = Math.ceil(context.measureText(text).width) + 16;
-  canvas.width = width;
-  canvas.height = 40;
-  context.font = font;
-  context.fillStyle = "rgba(20, 24, 32, 0.7)";
-  context.fillRect(0, 0, width, 40);
-  context.fillStyle = "#fff";
-  context.fillText(text, 8, 29);
-  const texture = new THREE.CanvasTexture(canvas);
-  texture.colorSpace = THREE.SRGBColorSpace;
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, depthTest: false, transparent: true }));
-  sprite.userData.aspect = width / 40;
-  sprite.center.set(-0.15, -0.3);
-  sprite.renderOrder = 20;
-  return sprite;
 }
 
 export class View {
@@ -218,35 +152,32 @@ export class View {
     this.box.makeEmpty();
     if (scene.head.solids.length === 0) this.look.solids = "";
     if (scene.head.rods.length === 0) this.look.rods = "";
-    this.solids = scene.head.solids.map((_, i) => this.addSolid(i));
-    this.rods = scene.head.rods.map((one, i) => this.addRod(i, one.samples));
-    this.bodies = scene.head.bodies.map((_, i) => this.addBody(i));
-    this.targets = scene.head.targets.filter((one) => one.position).map(() => this.addTarget());
-    this.outputs = scene.head.outputs.map((name) => {
-      const own = label(name);
-      this.own.add(own);
-      return own;
-    });
-    this.marks = new THREE.Points(
-      new THREE.BufferGeometry(),
-      new THREE.PointsMaterial({ color: "#e6e6e6", size: 4, sizeAttenuation: false, depthTest: false }),
-    );
+    this.solids = scene.head.solids.map((_, i) => solidShape(scene, i));
+    for (const { rest } of this.solids) {
+      for (let i = 0; i < rest.length; i += 3) this.box.expandByPoint(new THREE.Vector3().fromArray(rest, i));
+    }
+    this.rods = scene.head.rods.map((_, i) => rodShape(scene, i));
+    this.bodies = scene.head.bodies.map((_, i) => bodyShape(scene, i));
+    this.targets = scene.head.targets.filter((one) => one.position).map(targetShape);
+    this.outputs = scene.head.outputs.map(label);
+    const { axes, names } = axesShape(0.12 * this.size);
+    this.letters = names;
+    this.marks = pointsShape("#e6e6e6", 4);
     this.arrows = new THREE.LineSegments(
       new THREE.BufferGeometry(),
       new THREE.LineBasicMaterial({ color: "#d62728", depthTest: false, linewidth: 2 }),
     );
-    this.touches = new THREE.Points(
-      new THREE.BufferGeometry(),
-      new THREE.PointsMaterial({ color: "#d62728", size: 5, sizeAttenuation: false, depthTest: false }),
-    );
+    this.touches = pointsShape("#d62728", 5);
     this.hand = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: "#d62728" }));
     for (const one of [this.marks, this.arrows, this.touches, this.hand]) {
       one.frustumCulled = false;
       one.renderOrder = 10;
-      this.own.add(one);
     }
+    for (const { mesh, edges } of this.solids) this.own.add(mesh, edges);
+    for (const { mesh } of this.rods) this.own.add(mesh);
+    this.own.add(axes, ...this.bodies, ...this.targets, ...this.outputs, ...names);
+    this.own.add(this.marks, this.arrows, this.touches, this.hand);
     this.hand.visible = false;
-    this.axes();
     if (this.box.isEmpty()) this.box.expandByPoint(new THREE.Vector3(...scene.head.middle)).expandByScalar(this.size / 2);
     this.camera.up.set(...scene.head.up);
     if (!same) {
@@ -255,134 +186,6 @@ export class View {
       this.placed = false;
     }
     this.apply();
-  }
-
-  private axes(): void {
-    const length = 0.12 * this.size;
-    this.letters = [];
-    const axes = new THREE.AxesHelper(length);
-    axes.setColors("#d55e00", "#009e73", "#0072b2");
-    this.own.add(axes);
-    ["x", "y", "z"].forEach((name, i) => {
-      const own = label(name);
-      own.position.setComponent(i, length);
-      this.letters.push(own);
-      this.own.add(own);
-    });
-  }
-
-  private addSolid(number: number): Solid {
-    const scene = this.scene!;
-    const rest = scene.floats(`solid${number}.rest`);
-    const triangles = scene.whole(`solid${number}.triangles`);
-    const count = rest.length / 3;
-    for (let i = 0; i < rest.length; i += 3) this.box.expandByPoint(new THREE.Vector3(rest[i], rest[i + 1], rest[i + 2]));
-    const position = floats(count);
-    position.array.set(rest);
-    const color = floats(count);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", position);
-    geometry.setAttribute("color", color);
-    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(triangles), 1));
-    const smooth = triangles.length < 3 * 20000;
-    if (smooth) geometry.computeVertexNormals();
-    const material = new THREE.MeshStandardMaterial({
-      vertexColors: true,
-      side: THREE.DoubleSide,
-      roughness: 0.75,
-      flatShading: !smooth,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    });
-    const mesh = new THREE.Mesh(geometry, material);
-    const lines = new THREE.BufferGeometry();
-    lines.setAttribute("position", position);
-    lines.setIndex(new THREE.BufferAttribute(edgesOf(triangles), 1));
-    const edges = new THREE.LineSegments(lines, new THREE.LineBasicMaterial({ color: "#101418", transparent: true, opacity: 0.25 }));
-    mesh.frustumCulled = edges.frustumCulled = false;
-    mesh.renderOrder = 2;
-    edges.renderOrder = 3;
-    this.own.add(mesh, edges);
-    return { rest, nodes: scene.whole(`solid${number}.nodes`), position, color, mesh, edges, smooth };
-  }
-
-  private addRod(number: number, samples: number): Rod {
-    const count = samples * RING;
-    const geometry = new THREE.BufferGeometry();
-    const position = floats(count);
-    const normal = floats(count);
-    const color = floats(count);
-    const index: number[] = [];
-    for (let j = 0; j + 1 < samples; ++j) {
-      for (let k = 0; k < RING; ++k) {
-        const a = j * RING + k;
-        const b = j * RING + ((k + 1) % RING);
-        index.push(a, b, a + RING, b, b + RING, a + RING);
-      }
-    }
-    geometry.setIndex(index);
-    geometry.setAttribute("position", position);
-    geometry.setAttribute("normal", normal);
-    geometry.setAttribute("color", color);
-    const mesh = new THREE.Mesh(
-      geometry,
-      new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.4, side: THREE.DoubleSide }),
-    );
-    mesh.frustumCulled = false;
-    mesh.renderOrder = 1;
-    this.own.add(mesh);
-    let radius = this.scene!.floats(`rod${number}.radius`);
-    if (radius.length === 0) {
-      radius = new Float32Array(2 * samples); // a cable has none: drawn as a thread
-      for (let j = 0; j < samples; ++j) radius[2 * j + 1] = 0.0015 * this.size;
-    }
-    return { radius, samples, position, normal, color, mesh };
-  }
-
-  private addBody(number: number): THREE.Group {
-    const scene = this.scene!;
-    const head = scene.head.bodies[number]!;
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(scene.floats(`body${number}.points`)), 3));
-    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(scene.whole(`body${number}.triangles`)), 1));
-    if (head.round) geometry.computeVertexNormals();
-    const material = new THREE.MeshStandardMaterial({
-      color: head.ground ? "#a9b1bd" : head.fixed ? "#8a93a0" : "#c98a3a",
-      flatShading: !head.round,
-      roughness: 0.9,
-      transparent: head.ground,
-      opacity: head.ground ? 0.35 : 1,
-      side: THREE.DoubleSide,
-      depthWrite: !head.ground,
-    });
-    const group = new THREE.Group();
-    group.add(new THREE.Mesh(geometry, material));
-    if (!head.round && !head.ground) {
-      group.add(
-        new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 25), new THREE.LineBasicMaterial({ color: "#303030" })),
-      );
-    }
-    this.own.add(group);
-    return group;
-  }
-
-  private addTarget(): THREE.Group {
-    const group = new THREE.Group();
-    const ball = new THREE.Mesh(
-      new THREE.SphereGeometry(0.5, 24, 16),
-      new THREE.MeshBasicMaterial({ color: "#d62728", transparent: true, opacity: 0.85, depthTest: false }),
-    );
-    ball.renderOrder = 15;
-    const line = new THREE.Line(
-      new THREE.BufferGeometry().setAttribute("position", floats(2)),
-      new THREE.LineBasicMaterial({ color: "#d62728", depthTest: false }),
-    );
-    line.frustumCulled = false;
-    line.renderOrder = 14;
-    group.add(ball, line);
-    this.own.add(group);
-    return group;
   }
 
   // Where it is.
@@ -397,7 +200,7 @@ export class View {
       one.position.needsUpdate = true;
       if (one.smooth) one.mesh.geometry.computeVertexNormals();
     });
-    this.rods.forEach((one, i) => this.bend(one, frame.floats(`rod${i}`)));
+    this.rods.forEach((one, i) => bend(one, frame.floats(`rod${i}`)));
     const poses = frame.floats("bodies");
     this.bodies.forEach((one, i) => {
       one.position.set(poses[7 * i]!, poses[7 * i + 1]!, poses[7 * i + 2]!);
@@ -407,7 +210,9 @@ export class View {
     this.outputs.forEach((one, i) => one.position.set(outputs[3 * i]!, outputs[3 * i + 1]!, outputs[3 * i + 2]!));
     this.placeTargets();
     put(this.marks.geometry, frame.floats("points"));
-    this.placeArrows(frame.floats("contacts"));
+    const { points, lines } = arrowsOf(frame.floats("contacts"), 0.2 * this.size);
+    put(this.touches.geometry, points);
+    put(this.arrows.geometry, lines);
     this.paint();
     if (!this.placed) this.preset("corner");
     this.placed = true;
@@ -429,73 +234,6 @@ export class View {
       line.setXYZ(1, outputs[3 * at]!, outputs[3 * at + 1]!, outputs[3 * at + 2]!);
       line.needsUpdate = true;
     }
-  }
-
-  /** Where forces act, and arrows along them, the largest a fifth of the scene long. */
-  private placeArrows(contacts: Float32Array): void {
-    let most = 0;
-    for (let i = 0; i < contacts.length; i += 6) {
-      most = Math.max(most, Math.hypot(contacts[i + 3]!, contacts[i + 4]!, contacts[i + 5]!));
-    }
-    const scale = most > 0 ? (0.2 * this.size) / most : 0;
-    const points = new Float32Array(contacts.length / 2);
-    const lines = new Float32Array(3 * contacts.length); // a shaft and two barbs
-    const from = new THREE.Vector3();
-    const along = new THREE.Vector3();
-    const aside = new THREE.Vector3();
-    for (let i = 0; i < contacts.length; i += 6) {
-      from.fromArray(contacts, i).toArray(points, i / 2);
-      along.fromArray(contacts, i + 3).multiplyScalar(scale);
-      aside.set(along.z, along.x, along.y).cross(along);
-      if (aside.lengthSq() > 0) aside.setLength(0.07 * along.length());
-      const end = from.clone().add(along);
-      const back = from.clone().addScaledVector(along, 0.85);
-      [from, end, end, back.clone().add(aside), end, back.clone().sub(aside)].forEach((one, k) => one.toArray(lines, 3 * i + 3 * k));
-    }
-    put(this.touches.geometry, points);
-    put(this.arrows.geometry, lines);
-  }
-
-  /** A tube around the points; its rings do not turn about it. */
-  private bend(rod: Rod, points: Float32Array): void {
-    const position = rod.position.array as Float32Array;
-    const normal = rod.normal.array as Float32Array;
-    const tangent = new THREE.Vector3();
-    const before = new THREE.Vector3();
-    const u = new THREE.Vector3();
-    const v = new THREE.Vector3();
-    const turn = new THREE.Quaternion();
-    for (let j = 0; j < rod.samples; ++j) {
-      const from = Math.max(j - 1, 0);
-      const to = Math.min(j + 1, rod.samples - 1);
-      tangent.set(
-        points[3 * to]! - points[3 * from]!,
-        points[3 * to + 1]! - points[3 * from + 1]!,
-        points[3 * to + 2]! - points[3 * from + 2]!,
-      );
-      if (tangent.lengthSq() === 0) tangent.copy(j > 0 ? before : new THREE.Vector3(1, 0, 0));
-      tangent.normalize();
-      if (j === 0) {
-        u.set(Math.abs(tangent.x) < 0.9 ? 1 : 0, Math.abs(tangent.x) < 0.9 ? 0 : 1, 0);
-      } else {
-        u.applyQuaternion(turn.setFromUnitVectors(before, tangent));
-      }
-      u.addScaledVector(tangent, -u.dot(tangent)).normalize();
-      v.crossVectors(tangent, u);
-      before.copy(tangent);
-      const radius = rod.radius[2 * j + 1]!;
-      for (let k = 0; k < RING; ++k) {
-        const c = Math.cos((2 * Math.PI * k) / RING);
-        const s = Math.sin((2 * Math.PI * k) / RING);
-        const at = 3 * (j * RING + k);
-        for (let axis = 0; axis < 3; ++axis) {
-          const out = c * u.getComponent(axis) + s * v.getComponent(axis);
-          normal[at + axis] = out;
-          position[at + axis] = points[3 * j + axis]! + radius * out;
-        }
-      }
-    }
-    rod.position.needsUpdate = rod.normal.needsUpdate = true;
   }
 
   // How it looks.
@@ -692,17 +430,4 @@ function rangeOf(all: Float32Array[]): Range | null {
     }
   }
   return most >= least ? { least, most } : null;
-}
-
-/** Points or lines of a number that changes; there is room for twice as many as were needed. */
-function put(geometry: THREE.BufferGeometry, numbers: Float32Array): void {
-  let own = geometry.getAttribute("position") as THREE.BufferAttribute | undefined;
-  if (!own || own.array.length < numbers.length) {
-    geometry.dispose(); // with the buffer of before
-    own = floats(Math.max((2 * numbers.length) / 3, 16));
-    geometry.setAttribute("position", own);
-  }
-  (own.array as Float32Array).set(numbers);
-  own.needsUpdate = true;
-  geometry.setDrawRange(0, numbers.length / 3);
 }

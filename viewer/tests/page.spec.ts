@@ -1,7 +1,7 @@
 // The page against the program, in a browser.
 
 import { expect, test, type Page } from "@playwright/test";
-import { readdirSync, readFileSync } from "node:fs";
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 import { folder, root, Served, sinew } from "./server";
@@ -309,6 +309,22 @@ test("looks: section, opacity, presets, keys after a click", async ({ page }) =>
   await served.stop();
 });
 
+/** How many pixels in the lower left quarter of a picture have the first colour of viridis. */
+function darkest(page: Page, picture: string): Promise<number> {
+  return page.evaluate(async (encoded) => {
+    const image = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (own) => own.charCodeAt(0))]));
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d")!;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, image.height / 2, image.width / 2, image.height / 2);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (Math.abs(data[i]! - 0x44) + Math.abs(data[i + 1]! - 0x01) + Math.abs(data[i + 2]! - 0x54) < 6) ++count;
+    }
+    return count;
+  }, picture);
+}
+
 test("pictures and videos are saved", async ({ page }) => {
   const served = await Served.start("examples/finger.yaml");
   await open(page, served.address);
@@ -318,6 +334,9 @@ test("pictures and videos are saved", async ({ page }) => {
   };
   const picture = readFileSync(await begin("Picture"));
   expect(picture.subarray(1, 4).toString()).toBe("PNG");
+  mkdirSync(join(root, "viewer/test-results"), { recursive: true });
+  writeFileSync(join(root, "viewer/test-results", "saved.png"), picture);
+  expect(await darkest(page, picture.toString("base64"))).toBeGreaterThan(3); // the legend's lower end, at the left below
   await page.getByRole("button", { name: "Video" }).click();
   const draws = await page.evaluate(() => window.sinew.tally.draws);
   await page.waitForFunction((before) => window.sinew.tally.draws > before + 10, draws);

@@ -83,11 +83,7 @@ void take(const Request& request, Wishes& wishes) {
 // Simulation.
 
 Simulation::Simulation(const Model& model, int threads, OnFrame on_frame)
-    : model_(paced(model)),
-      iterations_(model_.scene.newton.iterations),
-      on_frame_(std::move(on_frame)),
-      scenery_(model_),
-      workspace_(model_, threads) {
+    : model_(paced(model)), on_frame_(std::move(on_frame)), scenery_(model_), workspace_(model_, threads) {
   if (model.scene.analysis == Analysis::statics || model.scene.analysis == Analysis::modal)
     throw InputError({.path = "analysis",
                       .rule = "cannot be watched live: a static or modal analysis does not go on in time",
@@ -181,13 +177,13 @@ bool Simulation::advance_once(const Wishes& wishes) {
     told.grips = {*wishes.grip};
     calm_ = state_.time + kCalm;
   }
-  model_.scene.newton.iterations = state_.time < calm_ ? 0 : iterations_;
+  const Effort effort{.converged = state_.time < calm_};
   Lead next = led(goal_at(model_, time), wishes);
   const Told by{&told, model_.effectors.empty() ? nullptr : &next.goal, forward};
   const long before = state_.grid;
   do {
     try {
-      report_ = advance(model_, workspace_, state_, Evaluation::full, by);
+      report_ = advance(model_, workspace_, state_, effort, by);
     } catch (const std::exception& error) {  // memory, say: people still look on
       trouble_ = error.what();
       return false;

@@ -69,8 +69,7 @@ class Simulation {
   void publish(const Wishes& wishes);
   void begin();
 
-  Model model_;           ///< only how often its steps are linearised changes
-  const int iterations_;  ///< while nothing pulls at bodies
+  const Model model_;
   OnFrame on_frame_;
   Scenery scenery_;
   Workspace workspace_;

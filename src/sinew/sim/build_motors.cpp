@@ -67,6 +67,17 @@ void set_limits(Model& model, const Actuator& actuator, const std::string& path,
   own.preferred = actuator.preferred.value_or(std::clamp(0.0, own.force.least, own.force.most));
 }
 
+/// Told to draw more of a rod out of a body, or to push it in, than there is of it.
+void warn_of_travel(Model& model, const std::string& path, const ActuatorModel& own) {
+  const Table* const table = std::get_if<Table>(&own.drive);
+  if (!table || own.told_force() || own.turns()) return;
+  double most = 0.0;
+  for (const double value : table->values) most = std::max(most, std::abs(value));
+  if (const double length = length_of(model, own.line); most > length)
+    model.warnings.push_back(path + ".displacement: " + text(most) + " m is more than the rod's length of " +
+                             text(length) + " m: numbers without a unit are metres");
+}
+
 }  // namespace
 
 void build_actuator(Model& model, const std::string& name, const Actuator& actuator) {
@@ -83,6 +94,7 @@ void build_actuator(Model& model, const std::string& name, const Actuator& actua
   }
   check_drive(actuator.drive, path);
   set_limits(model, actuator, path, own);
+  if (!actuator.axis) warn_of_travel(model, path, own);
   if (actuator.tendon) {
     if (own.line.rod < 0 || turns)
       reject(path + ".tendon", name, "a tendon pulls inside a Cosserat rod",

@@ -247,6 +247,10 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   facts.kept = static_cast<int>(kept.size());
   model.points.insert(model.points.end(), kept.begin(), kept.end());
   model.couplings.push_back(facts);
+  if (2 * facts.outside > facts.asked)
+    model.warnings.push_back(path + ": " + std::to_string(facts.outside) + " of " + std::to_string(facts.asked) +
+                             " points lie outside solids." + slide.solid + ", up to " + text(facts.farthest) +
+                             " m, and are tied to the nearest elements: is the rod where it should be?");
   if (slide.anchor_tip == AnchorTip::pose)
     tie_axes(model, number, line.rod, candidates.back().abscissa, solid, asked.positions.back(),
              candidates.back().where, {}, {0, 1, 2});

@@ -344,13 +344,13 @@ Aim Inverse::aim(const Model& model, const State& state) {
 }
 
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Evaluation evaluation) {
+                        State& state, Effort effort) {
   check(model, goal);
   Memory& memory = workspace.memory();
   memory.inverse.begin(model, state, goal, h);
   memory.command = command;
   for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
-  NewtonRules rules = step_rules(model, evaluation);
+  NewtonRules rules = step_rules(model, effort);
   rules.inverse = &memory.inverse;
   StepReport report = step_by(rules, memory, memory.command, h, state);
   if (accepted(report.status)) report.aim = memory.inverse.aim(model, state);

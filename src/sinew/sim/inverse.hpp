@@ -74,7 +74,7 @@ class Inverse {
 /// Of the command the sought actuators do not count. What came of it is in StepReport::aim. Throws
 /// std::invalid_argument where the goal has another size or is not finite, or the model has no targets.
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Evaluation evaluation = Evaluation::full);
+                        State& state, Effort effort = {});
 
 /// The equilibrium under what is prescribed at `time`, as `equilibrium_step` finds it, with the commands that bring the
 /// effectors nearest to their goals within their limits: Gauss and Newton's method on the exact tangents of equilibria,

@@ -250,6 +250,11 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
       if (built.path_deviation > 0.01 * built.rod.length())
         model.warnings.push_back("rods." + name + ": it starts " + text(built.path_deviation) +
                                  " m off its path, which its sections and strains cannot follow");
+      const double radius = rod::radius_at(built.rod.profile, 0.0);
+      if (radius > 0.5 * built.rod.length())
+        model.warnings.push_back("rods." + name + ": its radius of " + text(radius) +
+                                 " m is more than half its length of " + text(built.rod.length()) +
+                                 " m: numbers without a unit are metres");
     }
   }
   for (const auto& [name, body] : scene.bodies) build_body(model, name, body, read_mesh);

@@ -75,8 +75,8 @@ struct Memory {
 /// the iterate is where it ended.
 StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules, Iterate& iterate);
 
-/// How the scene wants its steps made.
-NewtonRules step_rules(const Model& model, Evaluation evaluation);
+/// How the scene wants its steps made, or whoever makes them.
+NewtonRules step_rules(const Model& model, const Effort& effort);
 
 /// Context and first guess of a step of h from a state to a command; returns the seconds that finding contacts took.
 double begin_step(Memory& memory, const State& state, const Command& command, double h);

@@ -31,11 +31,10 @@ StepReport taken(StepResult result, State& state) {
   return result.report;
 }
 
-StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation,
-                          const Told& told) {
+StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
   if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
   if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);
-  const bool equilibrium = model.scene.analysis == Analysis::quasi_static && model.scene.newton.iterations == 0;
+  const bool equilibrium = model.scene.analysis == Analysis::quasi_static && !step_rules(model, effort).fixed;
   const double h = model.scene.time.step;
   const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
   const bool on_grid = state.time == from;
@@ -61,10 +60,10 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
       else
         goal_at(model, time, goal);
       report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
-                           : inverse_step(model, workspace, goal, command, lands ? whole : part, state, evaluation);
+                           : inverse_step(model, workspace, goal, command, lands ? whole : part, state, effort);
     } else {
       report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
-                           : step(model, workspace, command, lands ? whole : part, state, evaluation);
+                           : step(model, workspace, command, lands ? whole : part, state, effort);
     }
     report.halvings = halvings;
     // What earlier attempts cost is part of what the step did.
@@ -82,12 +81,12 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
 
 }  // namespace
 
-StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation, const Told& told) {
+StepReport advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
   double seconds = 0.0;
   StepReport report;
   {
     const Clock clock(seconds);
-    report = try_to_advance(model, workspace, state, evaluation, told);
+    report = try_to_advance(model, workspace, state, effort, told);
   }
   report.times.step = seconds;
   return report;

@@ -21,8 +21,7 @@ struct Told {
 
 /// One accepted step towards the next point of the time grid, halved as often as needed: the only thing that decides
 /// how far is the state, so a run continued from a recorded state makes the same steps. On failure the state stays.
-StepReport advance(const Model& model, Workspace& workspace, State& state, Evaluation evaluation = Evaluation::full,
-                   const Told& told = {});
+StepReport advance(const Model& model, Workspace& workspace, State& state, Effort effort = {}, const Told& told = {});
 
 /// Steps of the whole grid: duration / step, rounded up to a whole number; of statics one, to the end of the path (of
 /// as many accepted steps as it takes); of a modal analysis the number of modes.

@@ -76,17 +76,17 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
   return report;
 }
 
-NewtonRules step_rules(const Model& model, Evaluation evaluation) {
+NewtonRules step_rules(const Model& model, const Effort& effort) {
   const Newton& wanted = model.scene.newton;
-  const bool fixed = wanted.iterations > 0;
+  const bool fixed = wanted.iterations > 0 && !effort.converged;
   NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
-  rules.evaluation = evaluation;
+  rules.evaluation = effort.evaluation;
   return rules;
 }
 
 StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
-                Evaluation evaluation) {
-  return step_by(step_rules(model, evaluation), workspace.memory(), command, h, state);
+                Effort effort) {
+  return step_by(step_rules(model, effort), workspace.memory(), command, h, state);
 }
 
 StepResult step(const Model& model, Workspace& workspace, const Command& command, const State& state, double h) {

@@ -142,10 +142,16 @@ enum class Evaluation {
   motion
 };
 
+/// How a step is made.
+struct Effort {
+  Evaluation evaluation = Evaluation::full;
+  bool converged = false;  ///< until the tolerance is met, whatever the scene's `newton` says
+};
+
 /// Advances a state by h [s]. On failure it stays as it is. After the first step of a model no memory is asked for
 /// where Newton's steps need no fallback.
 StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
-                Evaluation evaluation = Evaluation::full);
+                Effort effort = {});
 
 /// The same by value.
 struct StepResult {
