@@ -21,6 +21,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using tcp = boost::asio::ip::tcp;
+using testing::AllOf;
 using testing::HasSubstr;
 
 const std::string kToken = "0123456789abcdef";
@@ -305,7 +306,10 @@ TEST(Place, ThatCannotBeListenedOnIsTold) {
     return "";
   };
   EXPECT_THAT(refusal({"localhost", 0, kToken}), HasSubstr("is no numeric address"));
-  EXPECT_THAT(refusal({"203.0.113.1", 0, kToken}), HasSubstr("cannot be listened on"));
+  EXPECT_THAT(refusal({"203.0.113.1", 0, kToken}), AllOf(HasSubstr("--bind"), HasSubstr("cannot be listened on")));
+  const Server first({"127.0.0.1", 0, kToken}, {});
+  EXPECT_THAT(refusal({"127.0.0.1", first.port(), kToken}),
+              AllOf(HasSubstr("--port"), HasSubstr("cannot be listened on")));
   EXPECT_EQ(random_token().size(), 32u);
   EXPECT_NE(random_token(), random_token());
 }

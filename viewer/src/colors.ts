@@ -38,7 +38,7 @@ export const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "
 
 /** A field's name as people say it. */
 export function spoken(name: string): string {
-  const own: Record<string, string> = { von_mises: "von Mises stress", principal_stress: "largest principal stress" };
+  const own: Record<string, string> = { von_mises: "von Mises stress", principal_stress: "max. principal stress" };
   return own[name] ?? name.replaceAll("_", " ");
 }
 

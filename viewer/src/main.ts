@@ -37,6 +37,7 @@ let fresh = false;
 let stiffness = 100;
 let film: { recorder: MediaRecorder; capture: Capture } | null = null;
 let refusal = "";
+let touched = false; // somebody has dragged something
 let over: { x: number; y: number } | null = null; // where the pointer is, if nobody has looked what is there
 
 /** What came and was drawn; means over about 20 pictures, in ms: of our own script, and of drawing them (three.js and what it calls). */
@@ -49,6 +50,11 @@ function askToShow(): void {
   ask({ do: "show", solids: solids === "displacement" ? "" : solids, rods, energies: plots.energies() });
 }
 
+/** Of what is saved: the scene's title. */
+function fileName(): string {
+  return (scene?.head.title ?? "").toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "_").replace(/^_|_$/g, "") || "sinew";
+}
+
 /** What is seen now, onto what is kept of it. */
 function captured(capture: Capture): void {
   if (scene) capture.draw(legendOf(scene, view.look, view.ranges), view.look.map, latest?.head.when ?? "");
@@ -57,7 +63,7 @@ function captured(capture: Capture): void {
 function picture(): void {
   const capture = new Capture(canvas);
   captured(capture);
-  capture.canvas.toBlob((blob) => blob && download("sinew.png", blob));
+  capture.canvas.toBlob((blob) => blob && download(`${fileName()}.png`, blob));
 }
 
 /** Begins a video, or ends it and saves it; returns whether it records now. */
@@ -74,7 +80,7 @@ function video(): boolean {
   captured(capture);
   const recorder = new MediaRecorder(capture.canvas.captureStream(60), { mimeType: type });
   recorder.ondataavailable = (event) => parts.push(event.data);
-  recorder.onstop = () => download(type === "video/webm" ? "sinew.webm" : "sinew.mp4", new Blob(parts, { type }));
+  recorder.onstop = () => download(`${fileName()}.${type.slice(6)}`, new Blob(parts, { type }));
   recorder.start();
   film = { recorder, capture };
   return true;
@@ -113,6 +119,7 @@ function take(own: Any): void {
     view.build(scene);
     panel.build(scene, view.look);
     plots.build(scene);
+    tellHelp(scene.head.mode === "live");
     askToShow();
   } else {
     latest = own.message;
@@ -153,21 +160,40 @@ function tick(): void {
 function showStatus(): void {
   const { head } = latest!;
   const parts: [string, string][] = [[head.when, "time"]];
-  if (head.realtime !== undefined) parts.push([`${head.realtime.toFixed(2)}× real time`, "realtime"]);
+  if (head.realtime !== undefined && head.playing) parts.push([`${head.realtime.toFixed(2)}× real time`, "realtime"]);
   if (head.step_ms !== undefined) parts.push([`step ${head.step_ms.toFixed(2)} ms`, "step"]);
   parts.push([`${head.newton} Newton`, "newton"]);
   if (head.contacts) parts.push([`${head.contacts} contacts`, "contacts"]);
   parts.push([head.status, "state"]);
   if (head.halvings) parts.push([`step halved ${head.halvings}×`, "warning"]);
-  if (head.targets) parts.push([head.targets, head.targets.startsWith("reached") ? "fine" : "warning"]);
+  if (head.targets.startsWith("reached")) parts.push([head.targets, "fine"]);
+  else if (head.targets) parts.push([`${farOff()}${head.targets.replaceAll("actuators.", "")}`, "warning"]);
+  if (!touched && scene!.head.mode === "live" && head.playing) {
+    const what = [...(scene!.head.targets.some((own) => own.position) ? ["the red ball"] : []), ...(scene!.head.solids.length > 0 ? ["the body"] : [])];
+    if (what.length > 0) parts.push([`Drag ${what.join(", or ")}`, "hint"]);
+  }
   if (scene!.head.targets.length > 0 && Object.keys(head.mine ?? {}).length > 0) {
     parts.push(["targets are left alone while motors are told", "warning"]);
   }
   if (refusal) parts.push([refusal, "warning"]);
   status.replaceChildren(...parts.map(([text, name]) => make("span", { class: name, text })));
-  const stopped = head.trouble ? `Stopped: ${head.trouble} Reset begins again.` : "";
+  const stopped = head.trouble ? `Stopped: ${head.trouble} Play tries again, Reset begins anew.` : "";
   trouble.hidden = !stopped;
   if (trouble.textContent !== stopped) trouble.textContent = stopped;
+}
+
+/** "tip 58.2 mm off: ", of the position that is farthest from its target. */
+function farOff(): string {
+  const goals = latest!.doubles("goals");
+  const outputs = latest!.floats("outputs");
+  let most = 0;
+  let name = "";
+  for (const target of scene!.head.targets.filter((own) => own.position)) {
+    const at = scene!.head.outputs.indexOf(target.name);
+    const off = Math.hypot(...target.weights.map((weight, k) => (weight === 0 ? 0 : goals[target.first + k]! - outputs[3 * at + k]!)));
+    if (off > most) [most, name] = [off, target.name];
+  }
+  return most > 5e-5 ? `${name} ${(1e3 * most).toFixed(1)} mm off: ` : "";
 }
 
 function showLegend(): void {
@@ -229,6 +255,7 @@ canvas.addEventListener(
     const hit = view.pick(x, y);
     if (!hit) return;
     held = { hit, to: hit.point.clone(), pointer: event.pointerId };
+    touched = true;
     view.controls.enabled = false;
     canvas.setPointerCapture(event.pointerId);
     canvas.classList.add("holding");
@@ -255,24 +282,24 @@ const release = (): void => {
 canvas.addEventListener("pointerup", release);
 canvas.addEventListener("pointercancel", release);
 
-help.append(
-  make("h2", { text: "What you can do" }),
-  make(
-    "dl",
-    {},
-    ...[
-      ["Drag a red ball", "moves the target: the motors follow, as far as their limits allow"],
-      ["Drag the body", "pulls at it by a spring (red); Hand in the panel is its stiffness"],
-      ["Drag beside it, or with Alt", "turns the view; right button or two fingers shift it, the wheel comes nearer"],
-      ["Sliders", "tell a motor what to do; the button beside gives it back"],
-      ["Space, ., R", "play or pause, one step, reset"],
-      ["Section", "cuts solids open; Picture and Video save what is seen, Plots has the numbers"],
-      ["1 2 3 4", "views from the corner, front, side, top"],
-      ["P, G, H", "picture, plots, this help"],
-    ].flatMap(([term, text]) => [make("dt", { text: term! }), make("dd", { text: text! })]),
-  ),
-  make("button", { text: "Close", onclick: () => help.close() }),
-);
+/** What can be done with what is shown. */
+function tellHelp(live: boolean): void {
+  const all: [string, string, "live"?][] = [
+    ["Drag a red ball", "moves the target: the motors follow, as far as their limits allow", "live"],
+    ["Drag the body", "pulls at it by a spring (red); Hand in the panel is its stiffness", "live"],
+    [live ? "Drag beside it, or with Alt" : "Drag", "turns the view; right button or two fingers shift it, the wheel comes nearer"],
+    ["Sliders", "tell a motor what to do; the button below gives it back", "live"],
+    ["Space, ., R", "play or pause, one step, reset"],
+    ["Section", "cuts solids open; Picture and Video save what is seen, Plots has the numbers"],
+    ["1 2 3 4", "views from the corner, front, side, top"],
+    ["P, G, H", "picture, plots, this help"],
+  ];
+  help.replaceChildren(
+    make("h2", { text: "What you can do" }),
+    make("dl", {}, ...all.filter((own) => live || !own[2]).flatMap(([term, text]) => [make("dt", { text: term }), make("dd", { text })])),
+    make("button", { text: "Close", onclick: () => help.close() }),
+  );
+}
 
 addEventListener("keydown", (event) => {
   const at = event.target as HTMLElement;
@@ -295,7 +322,9 @@ declare global {
     sinew: unknown;
   }
 }
+new ResizeObserver(() => document.body.style.setProperty("--below", `${find("status").offsetHeight + 20}px`)).observe(find("status"));
 window.sinew = {
+  pick: (x: number, y: number) => view.pick(x, y),
   tally,
   scene: () => scene?.head,
   frame: () => latest?.head,

@@ -22,7 +22,7 @@ export class Panel {
   private play = make("button");
   private timeline = make("input", { type: "range" });
   private speed = make("select");
-  private motors: { slider: HTMLInputElement; said: HTMLElement; auto: HTMLButtonElement; held: boolean }[] = [];
+  private motors: { slider: HTMLInputElement; said: HTMLElement; auto: HTMLButtonElement; asked: { held: boolean; when: number } }[] = [];
   private goals: HTMLElement[] = [];
   private scene: SceneMessage | null = null;
   private playing = true;
@@ -31,7 +31,14 @@ export class Panel {
   constructor(
     private readonly place: HTMLElement,
     private readonly hands: Hands,
-  ) {}
+  ) {
+    place.classList.toggle("folded", innerWidth <= 600);
+    // Keys are the page's again once the mouse has done its work here.
+    place.addEventListener("click", (event) => {
+      const at = event.target as HTMLElement;
+      if (event.detail > 0 && at.matches("button, input, summary")) at.blur();
+    });
+  }
 
   build(scene: SceneMessage, look: Look): void {
     this.scene = scene;
@@ -52,7 +59,13 @@ export class Panel {
       make("button", { text: "Reset", title: "Back to the start (R)", onclick: () => hands.ask({ do: "reset" }) }),
       this.speed,
     );
-    const children: Node[] = [make("h1", { text: scene.head.title || "Sinew" }), transport];
+    const fold = make("button", {
+      class: "fold",
+      title: "Fold the panel, or unfold it",
+      "aria-label": "Fold the panel, or unfold it",
+      onclick: () => this.place.classList.toggle("folded"),
+    });
+    const children: Node[] = [make("h1", { text: scene.head.title || "Sinew" }), fold, transport];
     if (scene.head.mode === "replay") {
       this.timeline = make("input", {
         type: "range",
@@ -117,13 +130,13 @@ export class Panel {
         class: "auto",
         title: own.sought ? "Let the target find it again" : "Let the scene move it again",
         onclick: () => {
-          motor.held = false;
+          motor.asked = { held: false, when: performance.now() };
           this.hands.ask({ do: "tell", actuator: own.name, value: null });
         },
       });
-      const motor = { slider, said, auto, held: false };
+      const motor = { slider, said, auto, asked: { held: false, when: -Infinity } };
       slider.addEventListener("input", () => {
-        motor.held = true;
+        motor.asked = { held: true, when: performance.now() };
         this.hands.ask({ do: "tell", actuator: own.name, value: Number(slider.value) });
       });
       this.motors.push(motor);
@@ -248,16 +261,20 @@ export class Panel {
     this.motors.forEach((own, i) => {
       const { unit, name } = scene.head.actuators[i]!;
       own.said.textContent = quantity(told[i]!, unit);
-      own.held = frame.head.mine !== undefined && name in frame.head.mine;
-      own.auto.hidden = !own.held;
-      if (!own.held) own.slider.value = String(told[i]!);
+      // Frames that were on their way when it was asked do not know of it yet.
+      const mine = frame.head.mine !== undefined && name in frame.head.mine;
+      const held = performance.now() - own.asked.when < 1000 ? own.asked.held : mine;
+      own.auto.style.visibility = held ? "visible" : "hidden";
+      if (!held) own.slider.value = String(told[i]!);
     });
     const goals = frame.doubles("goals");
     this.goals.forEach((own, i) => {
       const target = scene.head.targets[i]!;
       const at = Array.from(goals.subarray(target.first, target.first + target.size));
       const [unit, factor] = shownUnit(target.unit);
-      own.textContent = `${at.map((value, k) => (target.weights[k] === 0 ? "free" : (value * factor).toFixed(1))).join(", ")} ${unit}`;
+      const shown = (value: number): string => (value * factor).toFixed(1).replace(/^-(0\.0)$/, "$1");
+      own.textContent = `${at.map((value, k) => (target.weights[k] === 0 ? "–" : shown(value))).join(", ")} ${unit}`;
+      own.title = target.weights.includes(0) ? "– is free" : "";
     });
   }
 }

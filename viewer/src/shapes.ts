@@ -11,6 +11,7 @@ export interface Solid {
   color: THREE.BufferAttribute;
   mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
   edges: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
+  cut: [THREE.Mesh, THREE.Mesh, THREE.Mesh]; // its back, its front, and the face of a section through it
   smooth: boolean;
 }
 
@@ -103,7 +104,42 @@ export function solidShape(scene: SceneMessage, number: number): Solid {
   mesh.frustumCulled = edges.frustumCulled = false;
   mesh.renderOrder = 2;
   edges.renderOrder = 3;
-  return { rest, nodes: scene.whole(`solid${number}.nodes`), position, color, mesh, edges, smooth };
+  return { rest, nodes: scene.whole(`solid${number}.nodes`), position, color, mesh, edges, cut: cutShape(geometry), smooth };
+}
+
+/** What fills a section: the pixels behind which the solid has more backs than fronts, counted by the stencil. */
+function cutShape(geometry: THREE.BufferGeometry): Solid["cut"] {
+  const counting = (side: THREE.Side, step: THREE.StencilOp): THREE.Mesh => {
+    const material = new THREE.MeshBasicMaterial({ side, colorWrite: false, depthWrite: false, depthTest: false, stencilWrite: true });
+    material.stencilFail = material.stencilZFail = material.stencilZPass = step;
+    return new THREE.Mesh(geometry, material);
+  };
+  const face = new THREE.MeshStandardMaterial({ color: "#c3ccd6", roughness: 0.9, side: THREE.DoubleSide, stencilWrite: true });
+  face.stencilFunc = THREE.NotEqualStencilFunc;
+  face.stencilFail = face.stencilZFail = face.stencilZPass = THREE.ReplaceStencilOp;
+  const own: Solid["cut"] = [
+    counting(THREE.BackSide, THREE.IncrementWrapStencilOp),
+    counting(THREE.FrontSide, THREE.DecrementWrapStencilOp),
+    new THREE.Mesh(new THREE.PlaneGeometry(1, 1), face),
+  ];
+  own[2].onAfterRender = (renderer) => renderer.clearStencil();
+  own.forEach((one, i) => {
+    one.frustumCulled = one.visible = false;
+    one.renderOrder = 1.2 + 0.1 * i; // after rods, before solids
+  });
+  return own;
+}
+
+/** Where a plane cuts a solid, in a scene of a size; undefined: nowhere. */
+export function placeCut({ cut, position }: Solid, plane: THREE.Plane | undefined, size: number): void {
+  const [back, front, face] = cut;
+  for (const one of cut) one.visible = plane !== undefined;
+  if (!plane) return;
+  for (const one of [back, front]) (one.material as THREE.Material).clippingPlanes = [plane];
+  const middle = new THREE.Box3().setFromBufferAttribute(position).getCenter(new THREE.Vector3());
+  plane.projectPoint(middle, face.position);
+  face.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), plane.normal);
+  face.scale.setScalar(6 * size);
 }
 
 /** A rod's tube, which is nowhere yet. */

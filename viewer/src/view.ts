@@ -5,7 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 import { palette, table, type MapName } from "./colors";
 import type { FrameMessage, SceneMessage, Vector } from "./message";
-import { RING, arrowsOf, axesShape, bend, bodyShape, label, pointsShape, put, rodShape, solidShape, targetShape, type Rod, type Solid } from "./shapes";
+import { RING, arrowsOf, axesShape, bend, bodyShape, label, pointsShape, put, rodShape, solidShape, targetShape, placeCut, type Rod, type Solid } from "./shapes";
 
 export interface Look {
   solids: string; // "", "displacement" or a field
@@ -46,7 +46,7 @@ export class View {
     contacts: true,
     section: 0,
     sectionAxis: 1,
-    sectionSide: 1,
+    sectionSide: -1,
   };
   /** Of what is coloured; null: nothing is. */
   ranges: { solids: Range | null; rods: Range | null } = { solids: null, rods: null };
@@ -72,7 +72,7 @@ export class View {
   private besides = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, stencil: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.localClippingEnabled = true;
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.001, 100);
@@ -173,7 +173,7 @@ export class View {
       one.frustumCulled = false;
       one.renderOrder = 10;
     }
-    for (const { mesh, edges } of this.solids) this.own.add(mesh, edges);
+    for (const { mesh, edges, cut } of this.solids) this.own.add(mesh, edges, ...cut);
     for (const { mesh } of this.rods) this.own.add(mesh);
     this.own.add(axes, ...this.bodies, ...this.targets, ...this.outputs, ...names);
     this.own.add(this.marks, this.arrows, this.touches, this.hand);
@@ -228,9 +228,11 @@ export class View {
       if (!target.position) continue;
       const own = this.targets[number++]!;
       const at = this.scene!.head.outputs.indexOf(target.name);
-      own.children[0]!.position.set(goals[target.first]!, goals[target.first + 1]!, goals[target.first + 2]!);
+      // Where it is free, it is where the output is.
+      const [x, y, z] = target.weights.map((weight, k) => (weight === 0 ? outputs[3 * at + k]! : goals[target.first + k]!));
+      own.children[0]!.position.set(x!, y!, z!);
       const line = (own.children[1] as THREE.Line).geometry.getAttribute("position") as THREE.BufferAttribute;
-      line.setXYZ(0, goals[target.first]!, goals[target.first + 1]!, goals[target.first + 2]!);
+      line.setXYZ(0, x!, y!, z!);
       line.setXYZ(1, outputs[3 * at]!, outputs[3 * at + 1]!, outputs[3 * at + 2]!);
       line.needsUpdate = true;
     }
@@ -257,6 +259,7 @@ export class View {
       material.depthWrite = look.opacity >= 1;
       material.clippingPlanes = planes;
       one.edges.material.clippingPlanes = planes;
+      placeCut(one, planes[0], this.size);
       one.edges.visible = look.edges;
       material.needsUpdate = true;
     }
@@ -270,7 +273,7 @@ export class View {
     const { look } = this;
     const values = this.solids.map((one, i) => this.valuesOf(one, i));
     const rods = this.rods.map((_, i) => this.frame!.floats(`rod${i}.${look.rods}`));
-    this.ranges = { solids: look.solids ? rangeOf(values) : null, rods: look.rods ? rangeOf(rods) : null };
+    this.ranges = { solids: look.solids ? rangeOf(values, look.solids) : null, rods: look.rods ? rangeOf(rods, look.rods) : null };
     if (this.ranges.solids && look.solids === "displacement") this.ranges.solids.least = 0;
     this.solids.forEach((one, i) => this.fill(one.color, values[i]!, 1, this.ranges.solids, [0.42, 0.6, 0.75]));
     this.rods.forEach((one, i) => {
@@ -327,6 +330,8 @@ export class View {
     this.camera.position.copy(middle).addScaledVector(from.normalize(), (1.1 * radius) / Math.sin(angle));
     this.camera.near = radius / 200;
     this.camera.far = radius * 200;
+    this.controls.minDistance = radius / 20;
+    this.controls.maxDistance = radius * 50;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(middle);
     this.controls.update();
@@ -369,7 +374,7 @@ export class View {
       if (before && Math.hypot(at.x - x, at.y - y) < 16) return { kind: "target", number, node: -1, point };
     }
     const ray = this.ray(x, y);
-    const hidden = this.bodies.filter((_, i) => !this.scene!.head.bodies[i]!.ground).map((one) => ray.intersectObject(one)[0]?.distance ?? Infinity);
+    const hidden = this.bodies.filter((_, i) => !this.scene!.head.bodies[i]!.ground).map((one) => ray.intersectObject(one.children[0]!, false)[0]?.distance ?? Infinity);
     ray.far = Math.min(Infinity, ...hidden);
     let best: { distance: number; hit: Hit } | null = null;
     this.solids.forEach((one, number) => {
@@ -419,8 +424,8 @@ export class View {
   }
 }
 
-/** Null: there are no values. */
-function rangeOf(all: Float32Array[]): Range | null {
+/** Null: there are no values. Stresses that are nothing but rounding are 0. */
+function rangeOf(all: Float32Array[], name: string): Range | null {
   let least = Infinity;
   let most = -Infinity;
   for (const own of all) {
@@ -429,5 +434,7 @@ function rangeOf(all: Float32Array[]): Range | null {
       if (value > most) most = value;
     }
   }
-  return most >= least ? { least, most } : null;
+  if (!(most >= least)) return null;
+  const rounding = /stress|von_mises/.test(name) && Math.max(most, -least) < 1e-3; // [Pa]
+  return rounding ? { least: 0, most: 0 } : { least, most };
 }

@@ -295,7 +295,7 @@ test("looks: section, opacity, presets, keys after a click", async ({ page }) =>
   await differs();
   await page.getByLabel("Section", { exact: true }).fill("0.5");
   await differs();
-  await page.getByLabel("cut").selectOption("from −y");
+  await page.getByLabel("cut").selectOption("from y");
   await differs();
   await page.getByLabel("Opacity").fill("1");
   await differs();
@@ -306,6 +306,73 @@ test("looks: section, opacity, presets, keys after a click", async ({ page }) =>
   const time = await page.evaluate(() => window.sinew.frame().time);
   await page.keyboard.press(".");
   await page.waitForFunction((before) => window.sinew.frame().time > before, time);
+  await served.stop();
+});
+
+test("all fingers can be pulled at, beside and behind a body", async ({ page }) => {
+  const served = await Served.start("examples/grasper.yaml");
+  await open(page, served.address);
+  const found = new Set<number>();
+  for (const key of ["1", "2", "3"]) {
+    await page.keyboard.press(key);
+    const own = await page.evaluate(() => {
+      const solids: number[] = [];
+      for (let x = 280; x < innerWidth; x += 12) {
+        for (let y = 20; y < innerHeight; y += 12) {
+          const hit = window.sinew.pick(x, y);
+          if (hit?.kind === "solid") solids.push(hit.number);
+        }
+      }
+      return [0, 1, 2].filter((number) => solids.filter((one) => one === number).length > 20);
+    });
+    own.forEach((one) => found.add(one));
+  }
+  expect([...found].sort()).toEqual([0, 1, 2]);
+  await served.stop();
+});
+
+test("a slider that is clicked at stays there", async ({ page }) => {
+  const served = await Served.start("examples/tendon_arm.yaml");
+  await open(page, served.address);
+  const slider = page.locator("input[data-actuator]").first();
+  const box = (await slider.boundingBox())!;
+  await page.mouse.click(box.x + 0.3 * box.width, box.y + box.height / 2);
+  const asked = Number(await slider.inputValue());
+  const name = (await slider.getAttribute("data-actuator"))!;
+  await page.waitForFunction((own) => own in window.sinew.frame().mine, name);
+  await page.waitForTimeout(1500);
+  expect(Number(await slider.inputValue())).toBe(asked);
+  await page.keyboard.press("Space"); // the page's again
+  await page.waitForFunction(() => !window.sinew.frame().playing);
+  await served.stop();
+});
+
+test("a section shows a face, not a shell", async ({ page }) => {
+  const served = await Served.start("examples/finger.yaml", "--set", "time.duration=1e6");
+  await open(page, served.address);
+  await page.keyboard.press("Space");
+  await page.keyboard.press("2"); // from -y
+  await page.getByLabel("Opacity").fill("1");
+  await page.getByLabel("Solids").selectOption({ index: 0 });
+  const faces = (): Promise<number> =>
+    page.evaluate(() => {
+      const canvas = document.getElementById("view") as HTMLCanvasElement;
+      const copy = document.createElement("canvas");
+      [copy.width, copy.height] = [canvas.width, canvas.height];
+      const context = copy.getContext("2d")!;
+      context.drawImage(canvas, 0, 0);
+      const { data } = context.getImageData(0, 0, copy.width, copy.height);
+      let count = 0; // lighter than the blue of solids, darker than the ground
+      for (let i = 0; i < data.length; i += 4) {
+        const [r, g, b] = [data[i]!, data[i + 1]!, data[i + 2]!];
+        if (r > 170 && r < 235 && b - r < 40 && Math.abs(g - r) < 20) ++count;
+      }
+      return count;
+    });
+  const before = await faces();
+  await page.getByLabel("Section").fill("0.5");
+  await expect.poll(faces).toBeGreaterThan(before + 5000);
+  await page.screenshot({ path: join(root, "viewer/test-results", "section.png") });
   await served.stop();
 });
 

@@ -2,6 +2,7 @@
 
 export interface Window {
   sinew: {
+    pick: (x: number, y: number) => { kind: string; number: number } | null;
     tally: { frames: number; draws: number; scriptMs: number; drawMs: number; worstMs: number };
     scene(): { mode: string; actuators: { name: string; most: number }[]; times?: number[] };
     frame(): {

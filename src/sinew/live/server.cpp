@@ -369,11 +369,13 @@ Server::Server(const Place& place, Behind behind) : own_(std::make_unique<Own>(p
   if (!error) own_->acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) own_->acceptor.bind(endpoint, error);
   if (!error) own_->acceptor.listen(asio::socket_base::max_listen_connections, error);
+  const bool taken = error == asio::error::address_in_use || error == asio::error::access_denied;
   if (error)
-    throw InputError({.path = "--bind",
+    throw InputError({.path = taken ? "--port" : "--bind",
                       .value = fmt::format("{}:{}", place.address, place.port),
                       .rule = "cannot be listened on: " + error.message(),
-                      .remedy = "choose another --port, or leave it out"});
+                      .remedy = taken ? "choose another --port, or leave it out"
+                                      : "give an address of this machine, or leave --bind out"});
   own_->accept();
   own_->thread = std::thread([own = own_.get()] { own->run(); });
 }

@@ -199,13 +199,20 @@ bool Simulation::advance_once(const Wishes& wishes) {
   return true;
 }
 
+/// Without the pace, which may be the page's own, where other limits are in the way as well.
+sinew::Aim without_pace(sinew::Aim aim) {
+  const auto paces = [](const Bound& bound) { return bound.limit == Limit::speed || bound.limit == Limit::force_rate; };
+  if (!std::all_of(aim.binding.begin(), aim.binding.end(), paces)) std::erase_if(aim.binding, paces);
+  return aim;
+}
+
 void Simulation::publish(const Wishes& wishes) {
   const Clock::time_point start = Clock::now();
   Json more = {{"frame", ++frame_},
                {"playing", wishes.playing},
                {"speed", wishes.speed},
                {"status", to_string(report_.status)},
-               {"targets", describe(model_, report_.aim)},
+               {"targets", describe(model_, without_pace(report_.aim))},
                {"newton", report_.newton},
                {"halvings", report_.halvings},
                {"contacts", report_.contact.contacts},
