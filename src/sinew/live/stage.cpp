@@ -39,6 +39,13 @@ Model paced(Model model) {
 /// Moves a value towards another by at most so much.
 double towards(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
 
+/// Without the pace, which may be the page's own, where other limits are in the way as well.
+sinew::Aim without_pace(sinew::Aim aim) {
+  const auto paces = [](const Bound& bound) { return bound.limit == Limit::speed || bound.limit == Limit::force_rate; };
+  if (!std::all_of(aim.binding.begin(), aim.binding.end(), paces)) std::erase_if(aim.binding, paces);
+  return aim;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -197,13 +204,6 @@ bool Simulation::advance_once(const Wishes& wishes) {
   lead_ = std::move(next);
   trouble_.clear();
   return true;
-}
-
-/// Without the pace, which may be the page's own, where other limits are in the way as well.
-sinew::Aim without_pace(sinew::Aim aim) {
-  const auto paces = [](const Bound& bound) { return bound.limit == Limit::speed || bound.limit == Limit::force_rate; };
-  if (!std::all_of(aim.binding.begin(), aim.binding.end(), paces)) std::erase_if(aim.binding, paces);
-  return aim;
 }
 
 void Simulation::publish(const Wishes& wishes) {
