@@ -92,7 +92,10 @@ def test_ctrl_c_stops_a_run_and_keeps_it(finger: Path, tmp_path: Path) -> None:
         except KeyboardInterrupt as stop:
             print(type(stop).__name__, len(stop.run), stop.run.end, flush=True)
     """)
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+    def heed() -> None:  # jobs in the background are born deaf to it
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, preexec_fn=heed) as process:
         assert process.stdout is not None and process.stdout.readline() == "begins\n"
         try:
             process.communicate(timeout=2)
