@@ -66,7 +66,8 @@ class Result:
                 axes.locator_params(nbins=4)  # labels have room
             elif axes.get_xscale() == "log" and axes.xaxis.get_transform().base == 2:
                 axes.xaxis.set_major_formatter("{x:g}")  # 8, not 2 to the power of 3
-        figure.savefig(self.out / name, dpi=110)
+        deep = any(hasattr(axes, "zaxis") for axes in figure.axes)
+        figure.savefig(self.out / name, dpi=110, bbox_inches="tight" if deep else None, pad_inches=0.3)  # labels of z are cut otherwise
         self.parts.append(f"![{what}]({name})")
 
     def check(self, what: str, value: float, least: float = float("-inf"), most: float = float("inf"), unit: str = "") -> None:
