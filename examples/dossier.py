@@ -163,5 +163,3 @@ def run_all(group: Path, usage: str | None) -> None:
 def _commit() -> str:
     told = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
     return told.stdout.strip() or "unknown"
-
-

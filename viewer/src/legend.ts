@@ -3,14 +3,14 @@
 import { gradient, quantity, shades, spoken, type MapName } from "./colors";
 import { make } from "./dom";
 import type { SceneMessage } from "./message";
-import type { Look, Range } from "./view";
+import type { Look, View } from "./view";
 
 export interface LegendRow {
   name: string;
   span: string; // from the least to the most
 }
 
-export function legendOf(scene: SceneMessage, look: Look, ranges: { solids: Range | null; rods: Range | null }): LegendRow[] {
+export function legendOf(scene: SceneMessage, look: Look, ranges: View["ranges"]): LegendRow[] {
   const { head } = scene;
   const both = head.solids.length > 0 && head.rods.length > 0;
   return (["solids", "rods"] as const).flatMap((kind) => {
