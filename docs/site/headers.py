@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-_NAMESPACE = re.compile(r"(inline )?namespace [\w:]* ?\{$|\}  // namespace|using namespace")
+_NAMESPACE = re.compile(r"(inline )?namespace [\w:]* ?\{( *//.*)?$|\}  // namespace|using namespace")
 _TYPE = re.compile(r"(?:template\s*<.*?>\s*)?(?:struct|class|enum class|enum|concept|using)\s+(?:\[\[.*?\]\]\s*)?(\w+)", re.DOTALL)
 _FUNCTION = re.compile(r"(operator\W{1,2}|~?\w+)\s*\(")
 _VALUE = re.compile(r"(\w+)(?:\[[^\]]*\])*\s*(?:=|\{|;)")

@@ -17,6 +17,7 @@ from sinew import convert, envs, errors, mesh, plot, running
 
 sys.path.insert(0, str(ROOT / "docs" / "site"))
 import blocks  # noqa: E402
+import headers  # noqa: E402
 
 # Blocks that the tests do not run, by page: they install, build, measure for minutes, serve a page, or need what is not here.
 NOT_RUN = {
@@ -83,6 +84,17 @@ def test_headers_are_read_as_they_are_written(tmp_path: Path) -> None:
         "work": "Does it, well.",
         "Kind": "kinds",
     }
+
+
+@pytest.mark.parametrize("folder", sorted((ROOT / "src" / "sinew").iterdir()), ids=lambda folder: folder.name)
+def test_what_pages_show_of_headers_is_whole(folder: Path) -> None:
+    lexer = pytest.importorskip("pygments.lexers").CppLexer()  # which the site uses, too
+    error = pytest.importorskip("pygments.token").Error
+    shown = re.findall(r"```cpp\n(.*?)\n```", headers.page(folder), re.DOTALL)
+    assert shown
+    for code in shown:
+        assert "namespace " not in code
+        assert not [text for kind, text in lexer.get_tokens(code) if kind is error], code
 
 
 def test_types_are_strictly_right() -> None:
