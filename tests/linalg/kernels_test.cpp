@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <string>
 
 namespace sinew::linalg {
@@ -69,6 +70,18 @@ TEST_P(Kernel, UpdatesThatAreLarge) {
   }
 }
 
+/// The squares of kLanes columns on the diagonal of a panel between how they are kept, with the inverse of their
+/// triangle below the diagonal and its transpose above, and how they are.
+void invert_squares(Eigen::MatrixXd& panel, int columns) {
+  for (int first = 0; first < columns; first += kLanes) {
+    const int size = std::min(kLanes, columns - first);
+    auto square = panel.block(first, first, size, size);
+    const Eigen::MatrixXd triangle = square.triangularView<Eigen::Lower>();
+    square = triangle.inverse().triangularView<Eigen::Lower>();
+    square.triangularView<Eigen::StrictlyUpper>() = Eigen::MatrixXd(square).transpose();
+  }
+}
+
 TEST_P(Kernel, FactorsPanels) {
   for (const int columns : {1, 2, 3, 7, 8, 9, 15, 16, 24, 41}) {
     for (const int more : {0, 1, 5, 8, 30}) {
@@ -81,7 +94,13 @@ TEST_P(Kernel, FactorsPanels) {
         panel.topRows(height) = A.leftCols(columns);
         Eigen::VectorXd pivots(columns), signs(columns);
         ASSERT_TRUE(own->factor(panel.data(), stride(panel), columns, height, pivots.data(), signs.data()));
+        for (int first = 0; first < columns; first += kLanes) {
+          const int size = std::min(kLanes, columns - first);
+          const Eigen::MatrixXd square = panel.block(first, first, size, size);
+          EXPECT_EQ(square, square.transpose());
+        }
         Eigen::MatrixXd P = panel.topRows(height);
+        invert_squares(P, columns);
         P.topRows(columns).triangularView<Eigen::StrictlyUpper>().setZero();
         const Eigen::MatrixXd product = P * signs.asDiagonal() * P.topRows(columns).transpose();
         EXPECT_LT((product - A.leftCols(columns)).norm(), 1e-13 * A.norm()) << columns << " x " << height;
@@ -121,6 +140,7 @@ TEST_P(Kernel, SolvesAndMultiplies) {
     Eigen::MatrixXd P = roomy(columns, columns);
     for (int i = 0; i < columns; ++i) P(i, i) += 5.0;
     const Eigen::MatrixXd L = P.topLeftCorner(columns, columns).triangularView<Eigen::Lower>();
+    invert_squares(P, columns);
     Eigen::VectorXd y = Eigen::VectorXd::Random(whole_lanes(columns) + kLanes);
     const Eigen::VectorXd right = y.head(columns);
     own->solve(P.data(), stride(P), columns, y.data());

@@ -9,7 +9,7 @@ namespace sinew::constraint {
 double project(const rod::Configuration& shape, double s, const Vec3& P) {
   const double length = shape.rod->length();
   const auto beyond_tip = [&] {  // the rod goes on straight
-    const rod::CurvePoint tip = rod::curve_point(shape, length);
+    const rod::CentrePoint tip = rod::centre_point(shape, length);
     return length + (P - tip.position).dot(tip.derivative) / tip.derivative.squaredNorm();
   };
   if (s > length) {
@@ -18,7 +18,7 @@ double project(const rod::Configuration& shape, double s, const Vec3& P) {
     s = length;
   }
   for (int iteration = 0; iteration < 50; ++iteration) {
-    const rod::CurvePoint point = rod::curve_point(shape, s);
+    const rod::CentrePoint point = rod::centre_point(shape, s);
     const Vec3 gap = P - point.position;
     const double slope = gap.dot(point.derivative);
     const double speed2 = point.derivative.squaredNorm();

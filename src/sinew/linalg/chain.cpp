@@ -3,7 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "sinew/linalg/chain_kernels.hpp"
 
 namespace sinew::linalg {
 
@@ -234,37 +235,6 @@ void ChainFactor::solve(Eigen::VectorXd& x, const Vec6& tau, Vec6* base) const {
 
 namespace {
 
-/// Numbers that are worked on together, one of each of several wrenches: a register of every x86-64 and ARMv8.
-constexpr int kLanes = 2;
-using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
-
-/// As many wrenches side by side.
-struct Wrenches {
-  Lanes of[6] = {};
-
-  Lanes dot(const double* v) const {
-    return v[0] * of[0] + v[1] * of[1] + v[2] * of[2] + v[3] * of[3] + v[4] * of[4] + v[5] * of[5];
-  }
-  void subtract(const double* v, const Lanes& factor) {
-    of[0] -= v[0] * factor;
-    of[1] -= v[1] * factor;
-    of[2] -= v[2] * factor;
-    of[3] -= v[3] * factor;
-    of[4] -= v[4] * factor;
-    of[5] -= v[5] * factor;
-  }
-};
-constexpr int kNumbers = 6 * kLanes;  ///< in them
-
-Wrenches load(const Eigen::MatrixXd& all, int i) {
-  Wrenches own;
-  std::memcpy(own.of, all.data() + static_cast<std::ptrdiff_t>(i) * kNumbers, sizeof(own.of));
-  return own;
-}
-void store(const Wrenches& own, Eigen::MatrixXd& all, int i) {
-  std::memcpy(all.data() + static_cast<std::ptrdiff_t>(i) * kNumbers, own.of, sizeof(own.of));
-}
-
 /// Copies the triangle below the diagonal of `from` to above that of `to` (which may be the same), block by block so
 /// that both stay in the cache.
 void mirror(const Eigen::MatrixXd& from, Eigen::MatrixXd& to) {
@@ -320,48 +290,39 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Con
   }
 
   // Wrenches on their way to the base, met by the attachments they pass; the last of them in the last lane.
-  const int blocks = (count + kLanes - 1) / kLanes, shift = blocks * kLanes - count;
+  const int blocks = (count + kWrenches - 1) / kWrenches, shift = blocks * kWrenches - count;
+  const ChainKernels& kernels = chain_kernels();
   Eigen::MatrixXd& moving = room.moving;
-  moving.setZero(kNumbers, blocks);
+  moving.setZero(kWrenchNumbers, blocks);
   int beyond = count;  // attachments of links beyond k: from this number on
   for (int k = last_link; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
     int own = beyond;
     while (own > 0 && attachments[own - 1].link == k) --own;
+    // Lanes before `beyond` are still empty; what they leave in W is written over, or lies above the diagonal.
+    if (const int block = (beyond + shift) / kWrenches; block < blocks) {
+      const Passage passage{chain.T.data() + 6 * at, Y_.data() + 6 * at, m, gamma.data() + 6 * own, beyond - own};
+      kernels.pass(passage, moving.col(block).data(), blocks - block, turned_W.data() + own * turned_W.outerStride(),
+                   count, kWrenches * block - shift);
+    }
     with_size(m, [&](auto size) {
       constexpr int M = decltype(size)::value;
-      const Columns<M> T = chain.T.middleCols<M>(at, m), Y = Y_.middleCols<M>(at, m);
-      for (int block = blocks - 1; (block + 1) * kLanes > beyond + shift; --block) {
-        const Wrenches before = load(moving, block);
-        Wrenches after = before;
-        for (int i = own; i < beyond; ++i) {
-          // Lanes before `beyond` are still empty; what they leave in W is written over, or lies above the diagonal.
-          const Lanes seen = before.dot(&gamma(0, i));
-          const int l = block * kLanes - shift;
-          if (l >= 0)
-            std::memcpy(&turned_W(l, i), &seen, sizeof(seen));
-          else
-            for (int lane = -l; lane < kLanes; ++lane) turned_W(l + lane, i) = seen[lane];
-        }
-        for (int c = 0; c < m; ++c) {
-          const Lanes felt = before.dot(&T(0, c));
-          after.subtract(&Y(0, c), felt);
-        }
-        store(after, moving, block);
-      }
+      const Columns<M> Y = Y_.middleCols<M>(at, m);
       const Square<M> S = S_.block<M, M>(0, at, m, m);
       for (int l = own; l < beyond; ++l) {
         const Vector<M> b = attachments[l].b;
         const Vec6 arrived = attachments[l].g - Y * b;
         const Vector<M> right = S * b;
-        for (int c = 0; c < 6; ++c) moving(kLanes * c + (l + shift) % kLanes, (l + shift) / kLanes) = arrived[c];
+        for (int c = 0; c < 6; ++c)
+          moving(kWrenches * c + (l + shift) % kWrenches, (l + shift) / kWrenches) = arrived[c];
         for (int i = own; i < beyond; ++i) turned_W(l, i) = alpha.col(i).dot(arrived) + attachments[i].b.dot(right);
       }
     });
     beyond = own;
   }
   for (int l = 0; l < count; ++l) {
-    for (int c = 0; c < 6; ++c) arriving(c, l) = moving(kLanes * c + (l + shift) % kLanes, (l + shift) / kLanes);
+    for (int c = 0; c < 6; ++c)
+      arriving(c, l) = moving(kWrenches * c + (l + shift) % kWrenches, (l + shift) / kWrenches);
   }
 }
 

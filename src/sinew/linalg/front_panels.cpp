@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -32,7 +33,7 @@ FrontPanels<Real>::FrontPanels(std::shared_ptr<const Fronts> plan, const Kernels
 }
 
 template <class Real>
-bool FrontPanels<Real>::factor(const std::vector<double>& values, const std::vector<double>& border_values,
+bool FrontPanels<Real>::factor(const AlignedVector<double>& values, const std::vector<double>& border_values,
                                threads::Crew& crew, const HalfSolve* right) {
   values_ = values.data();
   border_values_ = border_values.data();
@@ -77,6 +78,15 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
   return ok;
 }
 
+namespace {
+
+void copy_three(const double* from, float* to) {
+  std::transform(from, from + 3, to, [](double value) { return static_cast<float>(value); });
+}
+void copy_three(const double* from, double* to) { std::memcpy(to, from, 3 * sizeof(double)); }
+
+}  // namespace
+
 /// Its entries of A and of the border, where they belong.
 template <class Real>
 void FrontPanels<Real>::start_panel(const Front& front) {
@@ -89,8 +99,7 @@ void FrontPanels<Real>::start_panel(const Front& front) {
     const double* from = values_ + kBlockSize * (k + 1);
     Real* to = panel + block.into;
     if (block.rows == kAll && block.columns == kAll) {
-      for (int c = 0; c < 3; ++c, from += 4, to += stride)
-        std::transform(from, from + 3, to, [](double value) { return static_cast<Real>(value); });
+      for (int c = 0; c < 3; ++c, from += 4, to += stride) copy_three(from, to);
       continue;
     }
     for (int c = 0; c < 3; ++c, from += 4) {
@@ -114,7 +123,7 @@ bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Cr
   constexpr int kColumns = 96;  // of a panel at a time
   Real* const panel = panels_.data() + front.panel;
   const int height = front.height();
-  Real* const signs = signs_.data() + front.first;
+  Real* signs = signs_.data() + front.first;
   start_panel(front);
   add_children(front, room, true, crew);
   for (int first = 0; first < front.columns; first += kColumns) {
@@ -127,6 +136,7 @@ bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Cr
       update(crew, panel + static_cast<std::ptrdiff_t>(end) * (front.stride + 1), front.stride, own + count,
              front.stride, height - end, front.columns - end, count, signs + first, false);
   }
+  if (std::find(signs, signs + front.columns, Real(-1)) == signs + front.columns) signs = nullptr;
   update(crew, update_of(front, room), front.update_stride, panel + front.columns, front.stride,
          front.below + front.borders, front.below, front.columns, signs, true);
   add_children(front, room, false, crew);

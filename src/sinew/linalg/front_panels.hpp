@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "sinew/linalg/aligned.hpp"
 #include "sinew/linalg/fronts.hpp"
 #include "sinew/linalg/kernels.hpp"
 #include "sinew/threads/crew.hpp"
@@ -28,7 +29,7 @@ class FrontPanels {
 
   /// `values`, `border_values`: as Fronts places them. False where a pivot is zero or not finite.
   /// `right` is half solved on the way.
-  bool factor(const std::vector<double>& values, const std::vector<double>& border_values, threads::Crew& crew,
+  bool factor(const AlignedVector<double>& values, const std::vector<double>& border_values, threads::Crew& crew,
               const HalfSolve* right);
   static double rounding() { return static_cast<double>(std::numeric_limits<Real>::epsilon()); }
   /// Its size.
@@ -63,8 +64,8 @@ class FrontPanels {
   std::shared_ptr<const Fronts> plan_;
   const KernelsOf<Real>* kernels_;
   const double *values_ = nullptr, *border_values_ = nullptr;  ///< while it factors
-  std::vector<Real> panels_, updates_;
-  std::vector<std::vector<Real>> rooms_;  ///< of parts that are done at one time
+  AlignedVector<Real> panels_, updates_;
+  std::vector<AlignedVector<Real>> rooms_;  ///< of parts that are done at one time
   Eigen::VectorXd diagonal_;
   Vector pivots_, signs_;
   Matrix minus_W_;                                  ///< -H A^-1 H^T below its diagonal, in the order of the plan

@@ -21,7 +21,8 @@ struct KernelsOf {
   const char* name;
 
   /// Factors a panel of `columns` columns, P <- L |D|^(1/2) where P = L D [its upper part]^T and L has ones on its
-  /// diagonal. Above the diagonal anything is left. False where a pivot, an entry of D, is zero or not finite.
+  /// diagonal. The squares of kLanes columns on P's diagonal are kept inverted, with the transposed inverse above the
+  /// diagonal; farther above it anything is left. False where a pivot, an entry of D, is zero or not finite.
   bool (*factor)(Real* panel, int stride, int columns, int height, Real* pivots, Real* signs);
 
   /// The same of a square one whose rows begin with zeros, which stay: `begin` has the first column that is not zero of
@@ -30,7 +31,8 @@ struct KernelsOf {
                          Real* signs);
 
   /// C <- C - A S A^T, or -A S A^T where C is `fresh`: its first `columns` columns from the diagonal down to `height`;
-  /// beside the diagonal anything is left above it. A is height x depth, `signs` the diagonal of S.
+  /// beside the diagonal anything is left above it. A is height x depth, `signs` the diagonal of S; null: all are
+  /// positive.
   void (*update)(Real* C, int C_stride, const Real* A, int A_stride, int height, int columns, int depth,
                  const Real* signs, bool fresh);
 

@@ -137,9 +137,9 @@ void update_rows(Real* C, int C_stride, const Product& product, int top, int hei
 /// Signs differ rarely: where an indefinite matrix changes its sign.
 void update(Real* C, int C_stride, Product product, int height, int columns, bool fresh) {
   bool mixed = false;
-  for (int k = 1; k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
+  for (int k = 1; product.signs && k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
   if (!mixed) {
-    product.sign = product.depth > 0 ? product.signs[0] : Real(1);
+    product.sign = product.signs && product.depth > 0 ? product.signs[0] : Real(1);
     product.signs = nullptr;
   }
   const bool large = !product.begin && height > 2 * kChunk;
@@ -177,25 +177,31 @@ void divide(Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], cons
   }
 }
 
-void divide(int columns, Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], const Real* inverse) {
-  switch (columns) {
+/// work.operator()<count>() for a count that is known at run time, 1 to kBlock.
+template <class Work>
+[[gnu::always_inline]] inline auto with_count(int count, const Work& work) {
+  switch (count) {
     case 1:
-      return divide<1>(P, stride, rows, U, inverse);
+      return work.template operator()<1>();
     case 2:
-      return divide<2>(P, stride, rows, U, inverse);
+      return work.template operator()<2>();
     case 3:
-      return divide<3>(P, stride, rows, U, inverse);
+      return work.template operator()<3>();
     case 4:
-      return divide<4>(P, stride, rows, U, inverse);
+      return work.template operator()<4>();
     case 5:
-      return divide<5>(P, stride, rows, U, inverse);
+      return work.template operator()<5>();
     case 6:
-      return divide<6>(P, stride, rows, U, inverse);
+      return work.template operator()<6>();
     case 7:
-      return divide<7>(P, stride, rows, U, inverse);
+      return work.template operator()<7>();
     default:
-      return divide<8>(P, stride, rows, U, inverse);
+      return work.template operator()<8>();
   }
+}
+
+void divide(int columns, Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], const Real* inverse) {
+  with_count(columns, [&]<int count>() { divide<count>(P, stride, rows, U, inverse); });
 }
 
 /// What factor_profile says of a matrix; nothing of any other.
@@ -204,13 +210,81 @@ struct Profile {
   const Real* least = nullptr;
 };
 
+/// A column of a square, in kSlices registers.
+constexpr int kSlice = kWidth < kBlock ? kWidth : kBlock, kSlices = kBlock / kSlice;
+using Slice [[gnu::vector_size(sizeof(Real) * kSlice), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
+using Truth = decltype(Slice{} < Slice{});
+Slice load_slice(const Real* p) { return *reinterpret_cast<const Slice*>(p); }
+void store_slice(Real* p, const Slice& v) { *reinterpret_cast<Slice*>(p) = v; }
+
+/// A square on the diagonal, factored: D and what rows are divided by, and the inverse of its triangle.
+struct Square {
+  Real pivot[kBlock], sign[kBlock], inverse[kBlock];
+  Real U[kBlock][kBlock];     ///< [i][j]: sign i times P[j, i]
+  Real back[kBlock][kBlock];  ///< rows of P^-1
+};
+
+/// Unit triangles first, so that no pivot waits for a root.
+template <int count>
+bool factor_square(const Real* block, int stride, const Real* least, Square& own) {
+  Slice S[count][kSlices];
+#pragma GCC unroll 8
+  for (int j = 0; j < count; ++j) {
+#pragma GCC unroll 4
+    for (int p = j / kSlice; p < kSlices; ++p) S[j][p] = load_slice(block + static_cast<long>(j) * stride + p * kSlice);
+  }
+  Real L[count][count];  // of ones on its diagonal
+#pragma GCC unroll 8
+  for (int j = 0; j < count; ++j) {
+    Real d = S[j][j / kSlice][j % kSlice];
+    if (least && __builtin_fabs(d) < __builtin_fabs(least[j])) d = least[j];
+    own.pivot[j] = d;
+    const Real by = Real(1) / d;
+#pragma GCC unroll 8
+    for (int i = j + 1; i < count; ++i) {
+      L[i][j] = S[j][i / kSlice][i % kSlice] * by;
+#pragma GCC unroll 4
+      for (int p = i / kSlice; p < kSlices; ++p) S[i][p] -= S[j][p] * L[i][j];
+    }
+  }
+  Slice Y[count][kSlices];  // rows of L^-1
+#pragma GCC unroll 8
+  for (int i = 0; i < count; ++i) {
+#pragma GCC unroll 4
+    for (int p = 0; p < kSlices; ++p) Y[i][p] = Slice{};
+    Y[i][i / kSlice][i % kSlice] = Real(1);
+#pragma GCC unroll 8
+    for (int j = 0; j < i; ++j) {
+      for (int p = 0; p <= j / kSlice; ++p) Y[i][p] -= Y[j][p] * L[i][j];
+    }
+  }
+  bool good = true;
+#pragma GCC unroll 8
+  for (int j = 0; j < count; ++j) {
+    const Real d = own.pivot[j], size = d < Real(0) ? -d : d;
+    good &= size > Real(0) && size <= __DBL_MAX__;
+    own.sign[j] = d < Real(0) ? -Real(1) : Real(1);
+    const Real by = Real(1) / static_cast<Real>(__builtin_sqrt(size));
+    own.inverse[j] = own.sign[j] * by;
+#pragma GCC unroll 4
+    for (int p = j / kSlice; p < kSlices; ++p) store_slice(own.U[j] + p * kSlice, S[j][p] * by);
+    for (int p = 0; p <= j / kSlice; ++p) store_slice(own.back[j] + p * kSlice, Y[j][p] * by);
+  }
+  return good;
+}
+
+bool factor_square(int columns, const Real* block, int stride, const Real* least, Square& own) {
+  return with_count(columns, [&]<int count>() { return factor_square<count>(block, stride, least, own); });
+}
+
 bool factor_panel(Real* panel, int stride, int columns, int height, const Profile& profile, Real* pivots, Real* signs) {
   static_assert(kBlock == kLanes);
+  bool negative = false;
   for (int first = 0; first < columns; first += kBlock) {
     const int count = columns - first < kBlock ? columns - first : kBlock;
     Real* block = panel + static_cast<long>(first) * stride + first;
     if (first > 0) {
-      Product before{panel + first, panel + first, stride, stride, first, signs};
+      Product before{panel + first, panel + first, stride, stride, first, negative ? signs : nullptr};
       if (profile.begin) {
         before.begin = profile.begin + first / kLanes;
         before.least_begin = *before.begin;
@@ -218,24 +292,12 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
       update(block, stride, before, height - first, count, false);
     }
     // The square on the diagonal is factored apart; all rows, its own too, are then divided by it.
-    Real square[kBlock][kBlock], U[kBlock][kBlock], inverse[kBlock], root[kBlock];
+    Square square;
+    if (!factor_square(count, block, stride, profile.least ? profile.least + first : nullptr, square)) return false;
     for (int j = 0; j < count; ++j) {
-      for (int r = j; r < count; ++r) {
-        square[j][r] = block[static_cast<long>(j) * stride + r];
-        for (int i = 0; i < j; ++i) square[j][r] -= square[i][r] * U[i][j];
-      }
-      Real& d = square[j][j];
-      if (profile.least && __builtin_fabs(d) < __builtin_fabs(profile.least[first + j])) d = profile.least[first + j];
-      const Real size = d < Real(0) ? -d : d, sign = d < Real(0) ? -Real(1) : Real(1);
-      if (!(size > Real(0)) || !(size <= __DBL_MAX__)) return false;
-      pivots[first + j] = d;
-      signs[first + j] = sign;
-      root[j] = static_cast<Real>(__builtin_sqrt(size));
-      inverse[j] = sign / root[j];
-      for (int r = j; r < count; ++r) {
-        square[j][r] *= inverse[j];
-        U[j][r] = sign * square[j][r];
-      }
+      pivots[first + j] = square.pivot[j];
+      signs[first + j] = square.sign[j];
+      negative |= square.sign[j] < Real(0);
     }
     // Runs of rows that have begun.
     const int rows = height - first;
@@ -248,9 +310,14 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
         if (!begun(from)) continue;
       }
       const int own = (end < rows ? end : rows) - from;
-      divide(count, block + from, stride, (own + kWidth - 1) / kWidth * kWidth, U, inverse);
+      divide(count, block + from, stride, (own + kWidth - 1) / kWidth * kWidth, square.U, square.inverse);
     }
-    for (int j = 0; j < count; ++j) block[static_cast<long>(j) * stride + j] = root[j];  // also where d was replaced
+    for (int j = 0; j < count; ++j) {
+      for (int i = 0; i <= j; ++i) {
+        block[static_cast<long>(j) * stride + i] = square.back[j][i];
+        block[static_cast<long>(i) * stride + j] = square.back[j][i];
+      }
+    }
   }
   return true;
 }
@@ -350,8 +417,9 @@ void totals(const Lanes (&v)[4], Real* sums) {
   }
 }
 
+/// `tail`: what is left of y after its whole registers, and zeros.
 template <int count>
-void dots(const Real* A, int stride, int height, const Real* y, Real* x) {
+void dots(const Real* A, int stride, int height, const Real* y, const Lanes& tail, Real* x) {
   Lanes sum[count] = {};
   int at = 0;
   for (; at + kWidth <= height; at += kWidth) {
@@ -360,10 +428,8 @@ void dots(const Real* A, int stride, int height, const Real* y, Real* x) {
     for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * own;
   }
   if (at < height) {
-    Lanes own = {};
-    for (int i = at; i < height; ++i) own[i - at] = y[i];
 #pragma GCC unroll 4
-    for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * own;
+    for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * tail;
   }
   Real sums[count];
   if constexpr (count == 4) {
@@ -375,35 +441,48 @@ void dots(const Real* A, int stride, int height, const Real* y, Real* x) {
 }
 
 void multiply_transposed(const Real* A, int stride, int height, int columns, const Real* y, Real* x) {
+  Real left[kWidth] = {};
+  for (int i = height / kWidth * kWidth; i < height; ++i) left[i % kWidth] = y[i];
+  const Lanes tail = load(left);
   int k = 0;
-  for (; k + 4 <= columns; k += 4) dots<4>(A + static_cast<long>(k) * stride, stride, height, y, x + k);
-  for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, x + k);
+  for (; k + 4 <= columns; k += 4) dots<4>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
+  for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
+}
+
+/// x <- P^-1 x, or P^-T x, with a square on the diagonal: its columns hold P^-1 below the diagonal, P^-T above it.
+template <bool transposed>
+void divide_by_square(const Real* block, int stride, int count, Real* x) {
+  Real out[kBlock];
+  Truth lane;
+  for (int i = 0; i < kSlice; ++i) lane[i] = i;
+  Slice sum[kSlices] = {};
+  for (int j = 0; j < count; ++j) {
+#pragma GCC unroll 4
+    for (int p = 0; p < kSlices; ++p) {
+      const Slice own = load_slice(block + static_cast<long>(j) * stride + p * kSlice) * x[j];
+      sum[p] += (transposed ? lane + p * kSlice <= j : lane + p * kSlice >= j) ? own : Slice{};
+    }
+  }
+  for (int p = 0; p < kSlices; ++p) store_slice(out + p * kSlice, sum[p]);
+  for (int i = 0; i < count; ++i) x[i] = out[i];
 }
 
 // Blocks on the diagonal one by one; y and x have whole lanes.
 void solve(const Real* panel, int stride, int columns, Real* y) {
   for (int first = 0; first < columns; first += kBlock) {
     const int end = first + kBlock < columns ? first + kBlock : columns;
-    for (int j = first; j < end; ++j) {
-      const Real* column = panel + static_cast<long>(j) * stride;
-      y[j] /= column[j];
-      for (int r = j + 1; r < end; ++r) y[r] -= column[r] * y[j];
-    }
-    if (end < columns)
-      multiply(panel + static_cast<long>(first) * stride + end, stride, columns - end, kBlock, y + first, y + end);
+    const Real* block = panel + static_cast<long>(first) * (stride + 1);
+    divide_by_square<false>(block, stride, end - first, y + first);
+    if (end < columns) multiply(block + kBlock, stride, columns - end, kBlock, y + first, y + end);
   }
 }
 
 void solve_transposed(const Real* panel, int stride, int columns, Real* x) {
   for (int first = (columns - 1) / kBlock * kBlock; first >= 0; first -= kBlock) {
     const int end = first + kBlock < columns ? first + kBlock : columns;
-    multiply_transposed(panel + static_cast<long>(first) * stride + end, stride, columns - end, end - first, x + end,
-                        x + first);
-    for (int j = end - 1; j >= first; --j) {
-      const Real* column = panel + static_cast<long>(j) * stride;
-      for (int r = j + 1; r < end; ++r) x[j] -= column[r] * x[r];
-      x[j] /= column[j];
-    }
+    const Real* block = panel + static_cast<long>(first) * (stride + 1);
+    multiply_transposed(block + (end - first), stride, columns - end, end - first, x + end, x + first);
+    divide_by_square<true>(block, stride, end - first, x + first);
   }
 }
 

@@ -101,7 +101,8 @@ class SparseFactor {
 
   std::shared_ptr<const Fronts> plan_;
   std::vector<int> unknown_;  ///< at each place
-  std::vector<double> values_, border_values_;
+  AlignedVector<double> values_;
+  std::vector<double> border_values_;
   Panels panels_;
   int negative_ = 0;
 };

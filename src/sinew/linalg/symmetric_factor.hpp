@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/linalg/aligned.hpp"
 #include "sinew/linalg/kernels.hpp"
 
 namespace sinew::linalg {
@@ -34,7 +35,7 @@ class SymmetricFactor {
 
  private:
   const Kernels* kernels_;
-  std::vector<double> panel_;
+  AlignedVector<double> panel_;
   std::vector<int> begin_;
   std::vector<double> pivots_, signs_;
   int size_ = 0, stride_ = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sinew/linalg/sized.hpp"
+#include "sinew/rod/crossings.hpp"
 
 namespace sinew::rod {
 
@@ -61,6 +62,22 @@ class Beyond {
   /// it.
   Mat6 K() const { return sprung(assembled(Vec3(carried_.head<3>()), bending().tail<3>(), carried_.tail<3>())); }
   Mat6 U() const { return sprung(assembled(moment_, bending().tail<3>() - carried_.tail<3>(), Vec3::Zero())); }
+
+  /// Without springs, and of loads that have a potential: what all crossings need of it, as number k of them.
+  bool sprung() const { return sprung_; }
+  void put(int k, Crossings& crossings) const {
+    const Vec6 own = bending();
+    const double trace = second_.trace();
+    for (int i = 0; i < 3; ++i) {
+      crossings.moment[i][k] = wrench_[i];
+      crossings.force[i][k] = wrench_[3 + i];
+      crossings.bending_moment[i][k] = own[i];
+      crossings.bending_force[i][k] = own[3 + i];
+      crossings.lever[i][k] = lever_[i];
+      for (int j = 0; j < 3; ++j) crossings.turning[j][i][k] = (i == j ? trace : 0.0) - second_(i, j);
+    }
+    crossings.weight[k] = weight_;
+  }
 
  private:
   void add_springs(const Mat6& more) {
@@ -150,10 +167,6 @@ Mat6 local_tangent(const Piece& piece, const PieceMotion& motion, const Vec6& wr
   return H;
 }
 
-bool stretches(const Section& section) {
-  return std::any_of(section.modes.begin(), section.modes.end(), [](const Mode& mode) { return mode.strain >= 3; });
-}
-
 /// Walks the rod from the tip to the base with the sums of all loads met.
 class Walk {
  public:
@@ -186,6 +199,11 @@ class Walk {
                     const PartialWeights* slide) const;
   template <int M>
   void add(int i, int k, const Crossing<M>& crossing);
+  void begin_together(int i);
+  template <int M>
+  bool cross_together(int i, double length, const Beyond& beyond);
+  template <int M>
+  void add_together(int i);
   void add_base();
 
   const Configuration& shape_;
@@ -197,6 +215,10 @@ class Walk {
   Beyond beyond_;
   std::size_t left_;  ///< loads not yet met
   Branch branch_;     ///< to the loads at hand
+
+  const RodKernels& kernels_ = rod_kernels();
+  double longest_ = 0.0;  ///< exponential of the section that can be crossed with others; 0: none can
+  Crossings crossings_{};
 };
 
 /// What the loads met so far need at s; called again there, after more of them, only the base's side of it changes.
@@ -214,13 +236,48 @@ void Walk::balance(double s, const Mat3& R, const Vec3& p) {
 template <int M>
 void Walk::pass_section(int i) {
   const Section& section = rod_.sections[i];
-  stretches_ = stretches(section);
+  stretches_ = section.stretches();
+  begin_together(i);
   for (int k = shape_.first_step[i + 1] - 1; k >= shape_.first_step[i]; --k) {
     const Weights& weights = section.steps[static_cast<std::size_t>(k - shape_.first_step[i])].weights;
     const std::span<const Piece> whole(&shape_.pieces[static_cast<std::size_t>(shape_.steps[k].piece)],
                                        static_cast<std::size_t>(weights.rows()));
-    add(i, k, cross<M>(whole, i, beyond_, weights, nullptr));
+    if (!cross_together<M>(i, weights(0, 0), beyond_)) add(i, k, cross<M>(whole, i, beyond_, weights, nullptr));
     meet_loads<M>(i, k, i == 0 && k == 0);
+  }
+  add_together<M>(i);
+}
+
+/// Exponentials of a section of constant strain that does not stretch are crossed together, in the registers' lanes.
+void Walk::begin_together(int i) {
+  longest_ = symmetric_ && !stretches_ ? longest_exponential(shape_.strains[i]) : 0.0;
+  if (longest_ > 0.0) crossings_.from = beginning(shape_.R[i], shape_.p[i] - shape_.origin, shape_.strains[i]);
+}
+
+/// Leaves a crossing to be made with others, unless that cannot be.
+template <int M>
+bool Walk::cross_together(int i, double length, const Beyond& beyond) {
+  if (!(std::abs(length) < longest_) || beyond.sprung()) return false;
+  if (crossings_.count == kCrossings) add_together<M>(i);
+  crossings_.length[crossings_.count] = length;
+  beyond.put(crossings_.count++, crossings_);
+  return true;
+}
+
+template <int M>
+void Walk::add_together(int i) {
+  if (crossings_.count == 0) return;
+  std::fill(crossings_.length + crossings_.count, crossings_.length + kCrossings, 0.0);
+  Crossed all;
+  kernels_.cross(crossings_, all);
+  crossings_.count = 0;
+  const std::vector<Mode>& modes = rod_.sections[i].modes;
+  for (std::size_t b = 0; b < modes.size(); ++b) {
+    const int at = rod_.first[i] + static_cast<int>(b), strain = modes[b].strain;
+    equations_.r[rod_.base_coordinates() + at] += all.gradient[strain];
+    equations_.chain.V.col(at) += Vec6::Map(all.KT[strain]);
+    for (std::size_t a = 0; a < modes.size(); ++a)
+      equations_.chain.D(static_cast<Eigen::Index>(a), at) += all.tangent[strain][modes[a].strain];
   }
 }
 
@@ -243,7 +300,8 @@ void Walk::meet_loads(int i, int k, bool all) {
       R = &station.R;
       p = &station.p;
       weights = &rod_.stations[last.station].weights;
-      pieces = {&shape_.station_pieces[station.piece], static_cast<std::size_t>(weights->rows())};
+      if (station.piece >= 0)
+        pieces = {&shape_.station_pieces[station.piece], static_cast<std::size_t>(weights->rows())};
     } else {
       branch_in(shape_, i, k, s, branch_);
       pieces = branch_.pieces;
@@ -255,14 +313,20 @@ void Walk::meet_loads(int i, int k, bool all) {
       here.add(*p + *R * load.offset - shape_.origin, load);
       jump |= !load.spread;
     } while (left_ > 0 && loads_[left_ - 1].s == s && !slides && loads_[left_ - 1].slide < 0);  // each slide by itself
-    const Crossing<M> crossing = cross<M>(pieces, i, here, *weights, slides ? &branch_.weights : nullptr);
-    add(i, k, crossing);
-    if (slides) {
-      Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
-      slide.attachment.link = i;
-      slide.attachment.g = crossing.Kt;
-      slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
-      slide.second = crossing.second;
+    if (slides || !cross_together<M>(i, (*weights)(0, 0), here)) {
+      if (pieces.empty()) {
+        branch_in(shape_, i, k, s, branch_);
+        pieces = branch_.pieces;
+      }
+      const Crossing<M> crossing = cross<M>(pieces, i, here, *weights, slides ? &branch_.weights : nullptr);
+      add(i, k, crossing);
+      if (slides) {
+        Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
+        slide.attachment.link = i;
+        slide.attachment.g = crossing.Kt;
+        slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
+        slide.second = crossing.second;
+      }
     }
     if (jump) balance(s, *R, *p);
     beyond_.add(here);

@@ -1,6 +1,7 @@
 #include "sinew/rod/kinematics.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace sinew::rod {
 
@@ -49,8 +50,18 @@ Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd&
   return shape;
 }
 
+void reconfigure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape) {
+  const Base& from = shape.from;
+  if (shape.rod == &rod && from.rest.R == base.rest.R && from.rest.p == base.rest.p && from.turned == base.turned &&
+      shape.q == q)
+    return;
+  configure(rod, base, q, shape);
+}
+
 void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape) {
   shape.rod = &rod;
+  shape.from = base;
+  shape.q = q;
   shape.origin = base.rest.p;
   const int N = rod.count();
   Mat3 R = base.rest.R * base.turned;
@@ -76,6 +87,7 @@ void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Confi
   shape.first_step.clear();
   shape.steps.clear();
   shape.pieces.clear();
+  shape.stations.clear();
   shape.R.reserve(N + 1);
   shape.p.reserve(N + 1);
   shape.R.push_back(R);
@@ -130,6 +142,22 @@ void branch_in(const Configuration& shape, int i, int step, double s, Branch& br
   walk(branch.weights.value, strains, branch.R, branch.p, branch.pieces);
 }
 
+namespace {
+
+/// gamma_s = R u, so gamma_ss = R (k x u + u').
+Vec3 second_derivative(const Section& section, const Coefficients& strains, double s, const Mat3& R) {
+  Vec6 xi = strains.col(0);
+  Vec3 slope = Vec3::Zero();
+  if (strains.cols() > 1) {
+    const double x = section.local(s);
+    xi = strains * legendre(x).head(strains.cols());
+    slope = strains.bottomRows<3>() * legendre_slopes(x).head(strains.cols()) * (2.0 / section.length());
+  }
+  return R * (xi.head<3>().cross(xi.tail<3>()) + slope);
+}
+
+}  // namespace
+
 CurvePoint curve_point(const Configuration& shape, double s) {
   const Branch own = branch(shape, s);
   const Section& section = shape.rod->sections[own.section];
@@ -146,15 +174,23 @@ CurvePoint curve_point(const Configuration& shape, double s) {
     const Vec6 dW = strains * own.weights.first.row(j).head(strains.cols()).transpose();
     point.derivative += moved(twists * dW, own.p - shape.origin);
   }
-  // gamma_s = R u, so gamma_ss = R (k x u + u').
-  Vec6 xi = strains.col(0);
-  Vec3 slope = Vec3::Zero();
-  if (strains.cols() > 1) {
-    const double x = section.local(s);
-    xi = strains * legendre(x).head(strains.cols());
-    slope = strains.bottomRows<3>() * legendre_slopes(x).head(strains.cols()) * (2.0 / section.length());
-  }
-  point.second = own.R * (xi.head<3>().cross(xi.tail<3>()) + slope);
+  point.second = second_derivative(section, strains, s, own.R);
+  return point;
+}
+
+CentrePoint centre_point(const Configuration& shape, double s) {
+  const int i = shape.rod->section_at(s);
+  const Coefficients& strains = shape.strains[i];
+  if (strains.cols() > 1) return static_cast<const CentrePoint&>(curve_point(shape, s));
+  const Section& section = shape.rod->sections[i];
+  CentrePoint point;
+  point.section = i;
+  const Vec6 W = (s - section.begin) * strains.col(0);
+  const auto [turn, tangent] = lie::RotationMap::both(W.head<3>());
+  point.R.noalias() = shape.R[i] * turn.matrix();
+  point.position = shape.p[i] + shape.R[i] * (tangent * W.tail<3>());
+  point.derivative = point.R * strains.col(0).tail<3>();
+  point.second = second_derivative(section, strains, s, point.R);
   return point;
 }
 
@@ -169,30 +205,91 @@ Eigen::Matrix3Xd mass_positions(const Configuration& shape) {
   return positions;
 }
 
-void add_stations(Configuration& shape) {
-  shape.stations.clear();
-  shape.station_pieces.clear();
-  for (const Station& station : shape.rod->stations) {
-    const Configuration::StepStart& start = shape.steps[shape.first_step[station.section] + station.step];
-    Configuration::StationFrame& own = shape.stations.emplace_back(
-        Configuration::StationFrame{start.R, start.p, static_cast<int>(shape.station_pieces.size())});
-    walk(station.weights, shape.strains[station.section], own.R, own.p, shape.station_pieces);
+Beginning beginning(const Mat3& R, const Vec3& p, const Coefficients& strains) {
+  Beginning from;
+  Eigen::Map<Mat3>(&from.R[0][0]) = R;
+  Eigen::Map<Vec3>(from.p) = p;
+  Eigen::Map<Vec3>(from.rotation) = strains.col(0).head<3>();
+  Eigen::Map<Vec3>(from.translation) = strains.col(0).tail<3>();
+  return from;
+}
+
+double longest_exponential(const Coefficients& strains) {
+  return strains.cols() > 1 ? 0.0 : kLargestTurn / std::max(strains.col(0).head<3>().norm(), 1e-300);
+}
+
+namespace {
+
+/// Visits the frames at all stations; exponentials go into `pieces`, where they are wanted, but for those of sections
+/// that need none.
+template <class Visit>
+void each_station(const Configuration& shape, std::vector<Piece>* pieces, const Visit& visit) {
+  const std::vector<Station>& stations = shape.rod->stations;
+  const RodKernels& kernels = rod_kernels();
+  Eight length;
+  Reached reached;
+  Pieces own;
+  for (std::size_t k = 0; k < stations.size();) {
+    const Station& first = stations[k];
+    const Configuration::StepStart& start = shape.steps[shape.first_step[first.section] + first.step];
+    const Coefficients& strains = shape.strains[first.section];
+    const bool kept = pieces && shape.rod->sections[first.section].stretches();
+    const double longest = kept ? 0.0 : longest_exponential(strains);
+    int count = 0;
+    for (; count < kCrossings && k + count < stations.size(); ++count) {
+      const Station& station = stations[k + count];
+      if (station.section != first.section || !(station.weights(0, 0) < longest)) break;
+      length[count] = station.weights(0, 0);
+    }
+    if (count > 0) {
+      std::fill(length + count, length + kCrossings, 0.0);
+      kernels.reach(beginning(start.R, start.p, strains), length, count, reached);
+      for (int i = 0; i < count; ++i, ++k) {
+        Mat3 R;
+        Vec3 p;
+        for (int c = 0; c < 3; ++c) {
+          p[c] = reached.p[c][i];
+          for (int r = 0; r < 3; ++r) R(r, c) = reached.R[c][r][i];
+        }
+        visit(k, R, p, -1);
+      }
+      continue;
+    }
+    Mat3 R = start.R;
+    Vec3 p = start.p;
+    if (pieces) {
+      const auto piece = static_cast<int>(pieces->size());
+      walk(first.weights, strains, R, p, *pieces);
+      visit(k, R, p, piece);
+    } else {
+      own.clear();
+      walk(first.weights, strains, R, p, own);
+      visit(k, R, p, -1);
+    }
+    ++k;
   }
+}
+
+}  // namespace
+
+void add_stations(Configuration& shape) {
+  if (!shape.stations.empty()) return;
+  shape.station_pieces.clear();
+  each_station(shape, &shape.station_pieces, [&](std::size_t, const Mat3& R, const Vec3& p, int piece) {
+    shape.stations.push_back({R, p, piece});
+  });
 }
 
 void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions) {
   const Rod& rod = *shape.rod;
   positions.resize(3, static_cast<Eigen::Index>(rod.masses.size()));
-  Pieces pieces;
-  for (const Station& station : rod.stations) {
-    const Configuration::StepStart& start = shape.steps[shape.first_step[station.section] + station.step];
-    Mat3 R = start.R;
-    Vec3 p = start.p;
-    pieces.clear();
-    walk(station.weights, shape.strains[station.section], R, p, pieces);
+  const auto place = [&](std::size_t k, const Mat3& R, const Vec3& p, int) {
+    const Station& station = rod.stations[k];
     for (int i = station.first_mass; i < station.first_mass + station.masses; ++i)
       positions.col(i) = p + R * rod.masses[static_cast<std::size_t>(i)].offset;
-  }
+  };
+  if (shape.stations.empty()) return each_station(shape, nullptr, place);
+  for (std::size_t k = 0; k < rod.stations.size(); ++k) place(k, shape.stations[k].R, shape.stations[k].p, -1);
 }
 
 Matrix6X twists_at(const Configuration& shape, double s) {

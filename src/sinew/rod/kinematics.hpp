@@ -7,6 +7,7 @@
 
 #include "sinew/lie/rotation.hpp"
 #include "sinew/linalg/chain.hpp"
+#include "sinew/rod/crossings.hpp"
 #include "sinew/rod/rod.hpp"
 
 namespace sinew::rod {
@@ -60,6 +61,8 @@ struct Base {
 /// A rod in space. Everything below reads it. A twist (omega, v) moves what lies beyond: x' = v + omega x (x - origin).
 struct Configuration {
   const Rod* rod = nullptr;
+  Base from;
+  Eigen::VectorXd q;
   Vec3 origin = Vec3::Zero();         ///< the base at rest: keeps lever arms short wherever the scene stands
   std::vector<Mat3> R;                ///< N + 1 frames at the section ends
   std::vector<Vec3> p;                ///< N + 1 positions [m]
@@ -76,7 +79,7 @@ struct Configuration {
   struct StationFrame {
     Mat3 R;
     Vec3 p;
-    int piece;  ///< first of the exponentials from the start of the step
+    int piece;  ///< first of the exponentials from the start of the step; -1: not kept, as they are made together
   };
   std::vector<StationFrame> stations;  ///< of the mass points, once `add_stations` has been asked for them
   std::vector<Piece> station_pieces;
@@ -89,6 +92,8 @@ Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd&
 /// The same in the memory of an earlier one.
 void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape);
 Configuration configure(const Rod& rod, const Placement& base, const Eigen::VectorXd& q);
+/// The same, but where the shape is that already. The rod must not have changed.
+void reconfigure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape);
 
 /// The exponentials from the start of a step to an abscissa in it, and how they change with it.
 struct Branch {
@@ -103,12 +108,17 @@ Branch branch(const Configuration& shape, double s);
 void branch_in(const Configuration& shape, int i, int step, double s, Branch& branch);
 
 /// A point on the centreline.
-struct CurvePoint {
+struct CentrePoint {
   int section = 0;
-  Vec3 position;         ///< gamma(s)
-  Mat3 R;                ///< frame of the cross-section
-  Vec3 derivative;       ///< gamma_s
-  Vec3 second;           ///< gamma_ss, to the accuracy of the strains
+  Vec3 position;    ///< gamma(s)
+  Mat3 R;           ///< frame of the cross-section
+  Vec3 derivative;  ///< gamma_s
+  Vec3 second;      ///< gamma_ss, to the accuracy of the strains
+};
+CentrePoint centre_point(const Configuration& shape, double s);
+
+/// The same, and how it moves.
+struct CurvePoint : CentrePoint {
   SectionTwists twists;  ///< of the coordinates of its own section, as felt at the point
 };
 CurvePoint curve_point(const Configuration& shape, double s);
@@ -116,10 +126,15 @@ CurvePoint curve_point(const Configuration& shape, double s);
 /// Position of the material point at abscissa s, offset in the cross-section's frame.
 Vec3 position(const Configuration& shape, double s, const Vec3& offset = Vec3::Zero());
 
-/// Fills in the frames at the mass points.
+/// Fills in the frames at the mass points, unless they are there.
 void add_stations(Configuration& shape);
 
-/// Where the mass points are, 3 x count [m].
+/// For exponentials of constant strains that are made together (rod/crossings), and the longest that can be [m]; 0
+/// where the strains vary.
+Beginning beginning(const Mat3& R, const Vec3& p, const Coefficients& strains);
+double longest_exponential(const Coefficients& strains);
+
+/// Where the mass points are, 3 x count [m]. By the frames there, where they are filled in.
 Eigen::Matrix3Xd mass_positions(const Configuration& shape);
 void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions);
 

@@ -6,6 +6,10 @@
 
 namespace sinew::rod {
 
+bool Section::stretches() const {
+  return std::any_of(modes.begin(), modes.end(), [](const Mode& mode) { return mode.strain >= 3; });
+}
+
 int Rod::section_at(double s) const {
   const auto after =
       std::upper_bound(sections.begin(), sections.end(), s, [](double at, const Section& own) { return at < own.end; });

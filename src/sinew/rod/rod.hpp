@@ -53,6 +53,8 @@ struct Section {
   Eigen::MatrixXd damping;        ///< viscous forces are damping * qdot
   std::vector<Step> steps;        ///< of integration
   double length() const { return end - begin; }
+  /// Whether it has other coordinates than torsion and bending.
+  bool stretches() const;
   /// x in [-1, 1] of the Legendre polynomials at s.
   double local(double s) const { return (2.0 * s - begin - end) / length(); }
 };

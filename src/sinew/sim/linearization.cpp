@@ -65,6 +65,12 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   }
 }
 
+rod::Configuration& Linearization::shape(int rod) {
+  const auto number = static_cast<std::size_t>(rod);
+  if (reduced_.rods.size() <= number) reduced_.rods.resize(number + 1);
+  return reduced_.rods[number].shape;
+}
+
 ContactReport Linearization::contact_report() const {
   ContactReport report = contact_forces_.report();
   report.contacts = static_cast<int>(contacts_.playing.size() + context_->model.rubbing.size());

@@ -34,6 +34,8 @@ class Linearization {
   double violation() const { return reduced_.violation; }
   bool finite() const;
   const Reduced& reduced() const { return reduced_; }
+  /// Of a rod, for whoever looks at it before or after this does.
+  rod::Configuration& shape(int rod);
   const std::vector<SolidForces>& forces() const { return forces_; }
   ContactRoom& contacts() { return contacts_; }
   /// [m] how far the forces of contacts are from what their laws ask for.

@@ -115,7 +115,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     return report;
   };
   const auto complete = [&] {
-    finish(context, iterate.state, memory.room);
+    finish(context, iterate.state, here);
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     report.contact = here.contact_report();

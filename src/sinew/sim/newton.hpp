@@ -67,7 +67,6 @@ struct Memory {
   Iterate iterate;
   Command command;
   Inverse inverse;
-  rod::Configuration room;
   std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
 };
 

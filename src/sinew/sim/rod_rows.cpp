@@ -26,7 +26,8 @@ void sort_few(std::vector<T>& list, const Earlier& earlier) {
 
 RodRows::RodRows(const StepContext& context, const State& iterate, int number, Reduced& reduced)
     : context_(context), iterate_(iterate), number_(number), reduced_(reduced), own_(reduced.rods[number]) {
-  rod::configure(context.model.rods[number].rod, base_of(context, iterate, number), iterate.rods[number].q, own_.shape);
+  rod::reconfigure(context.model.rods[number].rod, base_of(context, iterate, number), iterate.rods[number].q,
+                   own_.shape);
   rod::add_stations(own_.shape);
   own_.loads.clear();
   own_.masses.clear();

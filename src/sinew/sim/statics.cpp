@@ -91,7 +91,7 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
 
   // Sliding points that the rod's end has passed or reached: the path jumps to where it goes on with them.
   State followed = state;
-  follow_points(context, followed, memory.room);
+  follow_points(context, followed, memory.there);
   const bool changed = !std::equal(state.points.begin(), state.points.end(), followed.points.begin(),
                                    [](const PointState& a, const PointState& b) { return a.on == b.on; });
   if (changed) {
@@ -189,7 +189,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     along(ramp, from)(1.0, memory.context);
     Iterate guess;
     first_guess(memory.context, guess.state);
-    follow_points(memory.context, guess.state, memory.room);
+    follow_points(memory.context, guess.state, memory.here);
     find_contacts(memory.context, guess.state, memory.here.contacts());
     return guess;
   };

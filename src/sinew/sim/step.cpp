@@ -57,7 +57,7 @@ double begin_step(Memory& memory, const State& state, const Command& command, do
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
-  follow_points(memory.context, iterate.state, memory.room);
+  follow_points(memory.context, iterate.state, memory.here);
   double spent = 0.0;
   {
     const Clock clock(spent);

@@ -40,15 +40,16 @@ void first_guess(const StepContext& context, State& guess) {
   place_held(context, guess);
 }
 
-void follow_points(const StepContext& context, State& iterate, rod::Configuration& shape) {
+void follow_points(const StepContext& context, State& iterate, Linearization& here) {
   int configured = -1;  // points of one rod stand together
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
     const PointModel& point = context.model.points[k];
     if (point.unknown < 0) continue;
     const int number = point.line.rod;
     const rod::Rod& rod = context.model.rods[number].rod;
+    rod::Configuration& shape = here.shape(number);
     if (number != configured) {
-      rod::configure(rod, base_of(context, iterate, number), iterate.rods[number].q, shape);
+      rod::reconfigure(rod, base_of(context, iterate, number), iterate.rods[number].q, shape);
       configured = number;
     }
     const Vec3 P = solid_point(context.model, iterate, point.solid, point.where);
@@ -152,14 +153,16 @@ void write_forces(const Linearization& here, State& next) {
   for (std::size_t i = 0; i < next.rods.size(); ++i) write_internal(here.reduced().internal[i], next.rods[i]);
 }
 
-void finish(const StepContext& context, State& next, rod::Configuration& shape) {
+void finish(const StepContext& context, State& next, Linearization& here) {
   const Model& model = context.model;
   next.time = context.start.time + context.h;
   for (std::size_t i = 0; i < next.solids.size(); ++i)
     next.solids[i].v = (next.solids[i].x - context.start.solids[i].x) * context.rate;
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
     RodState& own = next.rods[i];
-    rod::configure(model.rods[i].rod, base_of(context, next, static_cast<int>(i)), own.q, shape);
+    rod::Configuration& shape = here.shape(static_cast<int>(i));
+    rod::reconfigure(model.rods[i].rod, base_of(context, next, static_cast<int>(i)), own.q, shape);
+    rod::add_stations(shape);
     rod::mass_positions(shape, own.masses);
     own.velocity = (own.masses - context.start.rods[i].masses) * context.rate;
   }

@@ -15,10 +15,11 @@ void first_guess(const StepContext& context, State& guess);
 
 /// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
 /// that the end has reached again come on.
-void follow_points(const StepContext& context, State& iterate, rod::Configuration& shape);
+/// The rods' shapes stay with the linearisation, which then finds them.
+void follow_points(const StepContext& context, State& iterate, Linearization& here);
 
-/// Velocities, mass points and what else belongs to an accepted step.
-void finish(const StepContext& context, State& next, rod::Configuration& shape);
+/// Velocities, mass points and what else belongs to an accepted step. Shapes of rods as above.
+void finish(const StepContext& context, State& next, Linearization& here);
 /// Reactions and internal forces, evaluated there.
 void write_forces(const Linearization& here, State& next);
 

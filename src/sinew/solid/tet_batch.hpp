@@ -7,12 +7,13 @@
 namespace sinew::solid {
 
 inline constexpr int kBatch = 8;
+inline constexpr int kLine = 64;  ///< [bytes] of the cache
 
 /// A number of each element of a batch.
 using Eight = double[kBatch];
 
 /// Eight elements; what is left over in the last batch of a body has no volume.
-struct TetBatch {
+struct alignas(kLine) TetBatch {
   Eight gradient[3][3];  ///< [1/m] of the shape functions of nodes 0, 1, 2, by axis; the fourth's is minus their sum
   Eight mu, lambda;      ///< [N m] Lame's numbers times the volume
   Eight viscous_mu, viscous_lambda;  ///< [N m s]
@@ -22,13 +23,13 @@ struct TetBatch {
 };
 
 /// The deformation gradients of a batch's elements and their rotations, by columns.
-struct TetFrames {
+struct alignas(kLine) TetFrames {
   Eight F[3][3], R[3][3];
   unsigned missing = 0;  ///< a bit for each element whose rotation was not found, flat or inside out, say
 };
 
 /// On and below the diagonal, block (a, b) of nodes a >= b at a (a + 1) / 2 + b, its entries by columns.
-struct TetStiffness {
+struct alignas(kLine) TetStiffness {
   Eight block[10][9];  ///< [N/m]
 };
 

@@ -1,4 +1,5 @@
 // Compiled once for each width of registers, as linalg/kernels_lanes.cpp: it includes nothing of others.
+#include "sinew/linalg/lanes.hpp"
 #include "sinew/solid/tet_batch.hpp"
 
 namespace sinew::solid {
@@ -7,34 +8,7 @@ extern const TetKernels SINEW_KERNELS;
 
 namespace {
 
-constexpr int kWidth = SINEW_LANES;
-using Lanes [[gnu::vector_size(8 * SINEW_LANES), gnu::aligned(8), gnu::may_alias]] = double;
-using Truth [[gnu::vector_size(8 * SINEW_LANES)]] = long long;
-
-Lanes load(const double* p) { return *reinterpret_cast<const Lanes*>(p); }
-void store(double* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
-
-struct Vector {
-  Lanes x, y, z;
-};
-Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vector operator-(const Vector& a) { return {-a.x, -a.y, -a.z}; }
-Vector operator*(const Vector& a, const Lanes& s) { return {a.x * s, a.y * s, a.z * s}; }
-Lanes dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// A matrix by its columns.
-struct Matrix {
-  Vector c0, c1, c2;
-};
-Matrix operator+(const Matrix& A, const Matrix& B) { return {A.c0 + B.c0, A.c1 + B.c1, A.c2 + B.c2}; }
-Matrix operator-(const Matrix& A, const Matrix& B) { return {A.c0 - B.c0, A.c1 - B.c1, A.c2 - B.c2}; }
-Matrix operator*(const Matrix& A, const Lanes& s) { return {A.c0 * s, A.c1 * s, A.c2 * s}; }
-Vector operator*(const Matrix& A, const Vector& v) { return A.c0 * v.x + A.c1 * v.y + A.c2 * v.z; }
-Lanes dot(const Matrix& A, const Matrix& B) { return dot(A.c0, B.c0) + dot(A.c1, B.c1) + dot(A.c2, B.c2); }
+using namespace lanes;
 
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
@@ -154,7 +128,7 @@ Matrix rotation(const Matrix& F, Truth& found) {
   return X;
 }
 
-void frames(const TetBatch& batch, const double* x, TetFrames& frames) {
+[[gnu::flatten]] void frames(const TetBatch& batch, const double* x, TetFrames& frames) {
   frames.missing = 0;
   each_part(batch, [&](const Part& part) {
     const Matrix F = part.gradient_of(x);
@@ -187,8 +161,8 @@ Symmetric viscous_stress(const Part& part, const Matrix& F, const double* motion
           mu * (dot(middle.c2, dF.c0) + dot(middle.c0, dF.c2))};
 }
 
-void add_forces(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
-                const int (&node)[4][kBatch], double* elastic, double* viscous) {
+[[gnu::flatten]] void add_forces(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+                                 const int (&node)[4][kBatch], double* elastic, double* viscous) {
   each_part(batch, [&](const Part& part) {
     // A matrix times the gradients of the four nodes.
     const auto add_stress = [&](const Matrix& P, double* sum) {
@@ -222,30 +196,39 @@ Gradients operator*(const Matrix& A, const Gradients& g) {
   return {{A * g.of[0], A * g.of[1], A * g.of[2], A * g.of[3]}};
 }
 
-/// Puts the matrices that `block` gives of nodes a >= b.
-template <class Block>
-void put_blocks(const Part& part, TetStiffness& stiffness, const Block& block) {
-#pragma GCC unroll 4
-  for (int a = 0; a < 4; ++a) {
-#pragma GCC unroll 4
-    for (int b = 0; b <= a; ++b) {
-      const Matrix own = block(a, b);
-      Eight(&to)[9] = stiffness.block[a * (a + 1) / 2 + b];
-      store(to[0] + part.first, own.c0.x);
-      store(to[1] + part.first, own.c0.y);
-      store(to[2] + part.first, own.c0.z);
-      store(to[3] + part.first, own.c1.x);
-      store(to[4] + part.first, own.c1.y);
-      store(to[5] + part.first, own.c1.z);
-      store(to[6] + part.first, own.c2.x);
-      store(to[7] + part.first, own.c2.y);
-      store(to[8] + part.first, own.c2.z);
-    }
-  }
+/// Puts the block of nodes a >= b.
+void put(const Part& part, TetStiffness& stiffness, int a, int b, const Matrix& K) {
+  Eight(&to)[9] = stiffness.block[a * (a + 1) / 2 + b];
+  const Lanes entries[9] = {K.c0.x, K.c0.y, K.c0.z, K.c1.x, K.c1.y, K.c1.z, K.c2.x, K.c2.y, K.c2.z};
+#pragma GCC unroll 9
+  for (int i = 0; i < 9; ++i) store(to[i] + part.first, entries[i]);
 }
 
-/// u v^T.
-Matrix outer(const Vector& u, const Vector& v) { return {u * v.x, u * v.y, u * v.z}; }
+Matrix transposed(const Matrix& A) {
+  return {{A.c0.x, A.c1.x, A.c2.x}, {A.c0.y, A.c1.y, A.c2.y}, {A.c0.z, A.c1.z, A.c2.z}};
+}
+
+/// Puts all blocks, given those `block(a, b)` of nodes 2 >= a >= b: no force comes from moving all four nodes alike.
+template <class Block>
+void put_blocks(const Part& part, TetStiffness& stiffness, const Block& block) {
+  const Matrix none = {};
+  const auto last = [&none](const Matrix& A, const Matrix& B, const Matrix& C) { return none - (A + B + C); };
+  const Matrix K00 = block(0, 0), K10 = block(1, 0), K20 = block(2, 0);
+  put(part, stiffness, 0, 0, K00);
+  put(part, stiffness, 1, 0, K10);
+  put(part, stiffness, 2, 0, K20);
+  const Matrix K30 = last(K00, K10, K20), K11 = block(1, 1), K21 = block(2, 1);
+  put(part, stiffness, 3, 0, K30);
+  put(part, stiffness, 1, 1, K11);
+  put(part, stiffness, 2, 1, K21);
+  const Matrix K31 = last(transposed(K10), K11, K21), K22 = block(2, 2);
+  put(part, stiffness, 3, 1, K31);
+  put(part, stiffness, 2, 2, K22);
+  const Matrix K32 = last(transposed(K20), transposed(K21), K22);
+  put(part, stiffness, 3, 2, K32);
+  put(part, stiffness, 3, 3, last(K30, K31, K32));
+}
+
 Matrix operator*(const Symmetric& A, const Lanes& s) {
   return {{A.xx * s, A.xy * s, A.zx * s}, {A.xy * s, A.yy * s, A.yz * s}, {A.zx * s, A.yz * s, A.zz * s}};
 }
@@ -271,7 +254,7 @@ Symmetric square(const Matrix& F, const Lanes& mu, const Lanes& s) {
   return {s + mu * dot(x, x), s + mu * dot(y, y), s + mu * dot(z, z), mu * dot(x, y), mu * dot(y, z), mu * dot(z, x)};
 }
 
-void definite(const TetBatch& batch, const TetFrames& frames, double rate, TetStiffness& stiffness) {
+[[gnu::flatten]] void definite(const TetBatch& batch, const TetFrames& frames, double rate, TetStiffness& stiffness) {
   each_part(batch, [&](const Part& part) {
     const Matrix F = part(frames.F);
     const Gradients g = gradients(part);
@@ -293,7 +276,8 @@ Symmetric inverse(const Symmetric& A) {
 // With T = F R^T and w the turning of R for motions u_a of the nodes, (tr T - T) w = sum_a (R g_a) x u_a, the second
 // variation of the energy is 2 mu |dF|^2 + lambda (R . dF)^2 + (lambda tr(R^T F - 1) - 2 mu) w . (tr T - T) w.
 // (Where a rotation was found T is positive definite, and so is tr T - T, whose eigenvalues are sums of two of T's.)
-void exact(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate, TetStiffness& stiffness) {
+[[gnu::flatten]] void exact(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+                            TetStiffness& stiffness) {
   each_part(batch, [&](const Part& part) {
     const Matrix F = part(frames.F), R = part(frames.R);
     const Gradients g = gradients(part), t = R * g;
