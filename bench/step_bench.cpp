@@ -57,14 +57,20 @@ State under_way(const Model& model, Workspace& workspace, int steps = 10) {
   return state;
 }
 
-/// Times what is done to a copy of a state.
-template <class Work>
-double timed(const State& from, State& state, const Work& work) {
+/// Times the second of two steps, which starts where the first ended, as in a run; something else comes between them.
+template <class Between, class Work>
+double timed(const State& from, State& state, const Between& between, const Work& work) {
+  const auto go = [&] {
+    if (!accepted(work(state).status)) throw std::runtime_error("the run stopped");
+  };
   state = from;
+  go();
+  between();
   const double start = now();
-  if (!accepted(work(state).status)) throw std::runtime_error("the run stopped");
+  go();
   return now() - start;
 }
+void nothing() {}
 
 linalg::SparseFactor::Matrix matrix_of(const Model& model, const State& state, std::size_t solid = 0) {
   const StepContext context = make_context(model, state, command_at(model, state.time), model.scene.time.step);
@@ -94,28 +100,30 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
   const auto factor = [&] {
     const double start = now();
     if (!reference.factor()) throw std::runtime_error("not positive definite");
-    return now() - start;
+    result.reference = std::min(result.reference, now() - start);
   };
   for (int i = 0; i < turns; ++i) {
     StepReport report;
-    const double own =
-        timed(state, again, [&](State& at) { return report = advance(model, workspace, at, {Evaluation::motion}); });
+    const double own = timed(state, again, factor, [&](State& at) {
+      return report = advance(model, workspace, at, {Evaluation::motion});
+    });
     if (own < result.step) result.stages = report.times;
     result.step = std::min(result.step, own);
-    result.reference = std::min(result.reference, factor());
   }
   Workspace shared = make_workspace(model, 2);
   for (int i = 0; i < turns; ++i)
-    result.two = std::min(
-        result.two, timed(state, again, [&](State& at) { return advance(model, shared, at, {Evaluation::motion}); }));
+    result.two = std::min(result.two, timed(state, again, nothing, [&](State& at) {
+                            return advance(model, shared, at, {Evaluation::motion});
+                          }));
   if (result.cells >= kLarge) {
     Scene floats = scene;
     floats.newton.precision = linalg::Precision::float32;
     const Model small = build(floats, meshes);
     Workspace own = make_workspace(small);
     for (int i = 0; i < turns; ++i)
-      result.single = std::min(
-          result.single, timed(state, again, [&](State& at) { return advance(small, own, at, {Evaluation::motion}); }));
+      result.single = std::min(result.single, timed(state, again, nothing, [&](State& at) {
+                                 return advance(small, own, at, {Evaluation::motion});
+                               }));
   }
   if (scene.rods[0].second.cable == Cable::geometric) return result;
   Scene pulled = scene;
@@ -128,13 +136,10 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
     if (!accepted(step(inverse, own, hold, scene.time.step, start).status)) throw std::runtime_error("the run stopped");
   }
   const Goal goal = {output_position(inverse, start, inverse.outputs[0]) + Vec3(0, 0.1e-3, -0.1e-3)};
-  for (int i = 0; i < turns; ++i) {
-    result.inverse =
-        std::min(result.inverse, timed(start, again, [&](State& at) {
-                   return inverse_step(inverse, own, goal, hold, scene.time.step, at, {Evaluation::motion});
-                 }));
-    result.reference = std::min(result.reference, factor());
-  }
+  for (int i = 0; i < turns; ++i)
+    result.inverse = std::min(result.inverse, timed(start, again, factor, [&](State& at) {
+                                return inverse_step(inverse, own, goal, hold, scene.time.step, at, {Evaluation::motion});
+                              }));
   return result;
 }
 
@@ -168,9 +173,9 @@ void grasper(int turns) {
   StepReport report;
   Workspace shared = make_workspace(model, 2);
   for (int i = 0; i < turns; ++i) {
-    all.push_back(timed(state, again, [&](State& at) { return report = advance(model, workspace, at); }));
+    all.push_back(timed(state, again, nothing, [&](State& at) { return report = advance(model, workspace, at); }));
     step = std::min(step, all.back());
-    two = std::min(two, timed(state, again, [&](State& at) { return advance(model, shared, at); }));
+    two = std::min(two, timed(state, again, nothing, [&](State& at) { return advance(model, shared, at); }));
     const double start = now();
     for (Cholmod& own : references) {
       if (!own.factor()) throw std::runtime_error("not positive definite");

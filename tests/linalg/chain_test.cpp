@@ -39,8 +39,10 @@ TEST_P(ChainLaws, SolveAndMultiplyAreThoseOfTheMatrixWrittenOut) {
   const Eigen::VectorXd expected = A.partialPivLu().solve(b - U.transpose() * tau);
   EXPECT_LT((x - expected).norm(), 1e-11 * expected.norm());
   EXPECT_LT((base - chain.V * expected).norm(), 1e-11 * base.norm());
-  multiply(chain, x, tau, back);
+  Vec6 felt;
+  multiply(chain, x, tau, back, felt);
   EXPECT_LT((back - b).norm(), 1e-11 * b.norm());
+  EXPECT_LT((felt - base).norm(), 1e-11 * base.norm());
   const Mat6 response = -chain.V * A.partialPivLu().solve(Eigen::MatrixXd(U.transpose()));
   EXPECT_LT((factor.base_response() - response).norm(), 1e-11 * response.norm());
 }
@@ -58,6 +60,14 @@ TEST_P(ChainLaws, AttachmentsSeeEachOtherAsThroughTheMatrixWrittenOut) {
     R.row(static_cast<Eigen::Index>(i)) = dense(chain, attachments[i]);
     g.col(static_cast<Eigen::Index>(i)) = attachments[i].g;
   }
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(chain.coordinates()), y = Eigen::VectorXd::Random(R.rows());
+  const Vec6 tau = Vec6::Random();
+  Eigen::VectorXd seen, pulled;
+  along(chain, attachments, x, tau, seen);
+  EXPECT_LT((seen - R * x - g.transpose() * tau).norm(), 1e-13 * seen.norm());
+  const Vec6 wrench = across(chain, attachments, y, pulled);
+  EXPECT_LT((pulled - R.transpose() * y).norm(), 1e-13 * pulled.norm());
+  EXPECT_LT((wrench - g * y).norm(), 1e-13 * wrench.norm());
   ChainFactor factor;
   ASSERT_TRUE(factor.factor(chain));
   ChainFactor::Condensed condensed;

@@ -39,29 +39,36 @@ Eigen::MatrixXd dense(const Chain& chain) {
   return A;
 }
 
-double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y) {
+double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y, Vec6& wrench) {
   y.resize(chain.coordinates());
   double largest = 0.0;
   const auto see = [&largest](const auto& part) {
-    if (part.size() > 0) largest = std::max(largest, part.template lpNorm<Eigen::Infinity>());
+    for (Eigen::Index i = 0; i < part.size(); ++i) largest = std::max(largest, std::abs(part[i]));
   };
+  const Matrix6X& left = chain.symmetric() ? chain.V : chain.U;
   Vec6 twist = tau;
   for (int k = 0; k < chain.links(); ++k) {
     const int at = chain.first[k], m = chain.size(k);
-    auto own = y.segment(at, m);
-    own.noalias() = chain.left_wrenches(k).transpose().lazyProduct(twist);
-    see(own);
-    own.noalias() += chain.block(k).lazyProduct(x.segment(at, m));
-    twist.noalias() += chain.twists(k).lazyProduct(x.segment(at, m));
+    with_size(m, [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      const Vector<M> own = x.segment<M>(at, m);
+      const Vector<M> pushed = left.middleCols<M>(at, m).transpose() * twist;
+      see(pushed);
+      y.segment<M>(at, m).noalias() = pushed + chain.D.block<M, M>(0, at, m, m).lazyProduct(own);
+      twist.noalias() += chain.T.middleCols<M>(at, m) * own;
+    });
   }
-  Vec6 wrench = Vec6::Zero();
+  wrench.setZero();
   for (int k = chain.links() - 1; k >= 0; --k) {
     const int at = chain.first[k], m = chain.size(k);
-    auto own = y.segment(at, m);
-    see(own);
-    own.noalias() += chain.twists(k).transpose().lazyProduct(wrench);
-    see(own);
-    wrench.noalias() += chain.wrenches(k).lazyProduct(x.segment(at, m));
+    with_size(m, [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      auto own = y.segment<M>(at, m);
+      see(own);
+      own.noalias() += chain.T.middleCols<M>(at, m).transpose() * wrench;
+      see(own);
+      wrench.noalias() += chain.V.middleCols<M>(at, m) * x.segment<M>(at, m);
+    });
   }
   return largest;
 }
@@ -74,32 +81,42 @@ Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment) {
   return r;
 }
 
-void along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x,
+void along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x, const Vec6& tau,
            Eigen::VectorXd& y) {
   y.resize(static_cast<Eigen::Index>(attachments.size()));
-  Vec6 twist = Vec6::Zero();
-  int k = 0;
-  for (std::size_t i = 0; i < attachments.size(); ++i) {
-    for (; k < attachments[i].link; ++k)
-      twist.noalias() += chain.twists(k).lazyProduct(x.segment(chain.first[k], chain.size(k)));
-    y[static_cast<Eigen::Index>(i)] =
-        attachments[i].g.dot(twist) + attachments[i].b.dot(x.segment(chain.first[k], chain.size(k)));
+  Vec6 twist = tau;
+  std::size_t next = 0;
+  for (int k = 0; k < chain.links() && next < attachments.size(); ++k) {
+    const int at = chain.first[k], m = chain.size(k);
+    with_size(m, [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      const Vector<M> own = x.segment<M>(at, m);
+      for (; next < attachments.size() && attachments[next].link == k; ++next)
+        y[static_cast<Eigen::Index>(next)] =
+            attachments[next].g.dot(twist) + attachments[next].b.head<M>(m).dot(own);
+      twist.noalias() += chain.T.middleCols<M>(at, m) * own;
+    });
   }
 }
 
-void across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y,
+Vec6 across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y,
             Eigen::VectorXd& x) {
   x.resize(chain.coordinates());
   Vec6 wrench = Vec6::Zero();
   auto left = static_cast<std::ptrdiff_t>(attachments.size()) - 1;
   for (int k = chain.links() - 1; k >= 0; --k) {
-    auto own = x.segment(chain.first[k], chain.size(k));
-    own.noalias() = chain.twists(k).transpose().lazyProduct(wrench);
-    for (; left >= 0 && attachments[static_cast<std::size_t>(left)].link == k; --left) {
-      own += y[left] * attachments[static_cast<std::size_t>(left)].b;
-      wrench += y[left] * attachments[static_cast<std::size_t>(left)].g;
-    }
+    const int at = chain.first[k], m = chain.size(k);
+    with_size(m, [&](auto size) {
+      constexpr int M = decltype(size)::value;
+      Vector<M> own = chain.T.middleCols<M>(at, m).transpose() * wrench;
+      for (; left >= 0 && attachments[static_cast<std::size_t>(left)].link == k; --left) {
+        own += y[left] * attachments[static_cast<std::size_t>(left)].b.head<M>(m);
+        wrench += y[left] * attachments[static_cast<std::size_t>(left)].g;
+      }
+      x.segment<M>(at, m) = own;
+    });
   }
+  return wrench;
 }
 
 namespace {

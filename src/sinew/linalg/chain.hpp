@@ -48,8 +48,8 @@ void make_chain(const std::vector<int>& first, bool symmetric, Chain& chain);
 Eigen::MatrixXd dense(const Chain& chain);
 
 /// y = A x + U^T tau: what all links answer to x when the base moves by the twist tau. Returns the largest number
-/// on the way to y, beside which rounding in y has to be seen.
-double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y);
+/// on the way to y, beside which rounding in y has to be seen. `wrench` is V x, which the base feels.
+double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, Eigen::VectorXd& y, Vec6& wrench);
 
 /// What couples one outside unknown to a chain: for every link nearer to the base than `link` the wrench `g`, as
 /// T_j^T g, and for the link itself the vector `b`.
@@ -62,10 +62,11 @@ struct Attachment {
 /// The vector of an attachment over all coordinates.
 Eigen::VectorXd dense(const Chain& chain, const Attachment& attachment);
 
-/// y = R x for attachments sorted by link, and x = R^T y.
-void along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x,
+/// y = R x + tau . g for attachments sorted by link, when the base moves by the twist tau.
+void along(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& x, const Vec6& tau,
            Eigen::VectorXd& y);
-void across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y,
+/// x = R^T y; returns the sum of y_i g_i, the wrench at the base.
+Vec6 across(const Chain& chain, const std::vector<Attachment>& attachments, const Eigen::VectorXd& y,
             Eigen::VectorXd& x);
 
 /// A = L S R factored from the tip to the base; no pivoting between links.

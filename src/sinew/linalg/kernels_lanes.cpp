@@ -224,28 +224,41 @@ struct Square {
   Real back[kBlock][kBlock];  ///< rows of P^-1
 };
 
-/// Unit triangles first, so that no pivot waits for a root.
+/// Unit triangles first, number by number: no pivot waits for a root, or for a number to change its lane.
 template <int count>
 bool factor_square(const Real* block, int stride, const Real* least, Square& own) {
-  Slice S[count][kSlices];
+  Real A[count][count];  // columns
 #pragma GCC unroll 8
   for (int j = 0; j < count; ++j) {
-#pragma GCC unroll 4
-    for (int p = j / kSlice; p < kSlices; ++p) S[j][p] = load_slice(block + static_cast<long>(j) * stride + p * kSlice);
+#pragma GCC unroll 8
+    for (int i = j; i < count; ++i) A[j][i] = block[static_cast<long>(j) * stride + i];
   }
   Real L[count][count];  // of ones on its diagonal
 #pragma GCC unroll 8
   for (int j = 0; j < count; ++j) {
-    Real d = S[j][j / kSlice][j % kSlice];
+    Real d = A[j][j];
     if (least && __builtin_fabs(d) < __builtin_fabs(least[j])) d = least[j];
     own.pivot[j] = d;
     const Real by = Real(1) / d;
 #pragma GCC unroll 8
-    for (int i = j + 1; i < count; ++i) {
-      L[i][j] = S[j][i / kSlice][i % kSlice] * by;
-#pragma GCC unroll 4
-      for (int p = i / kSlice; p < kSlices; ++p) S[i][p] -= S[j][p] * L[i][j];
+    for (int k = j + 1; k < count; ++k) {
+      L[k][j] = A[j][k] * by;
+#pragma GCC unroll 8
+      for (int i = k; i < count; ++i) A[k][i] -= A[j][i] * L[k][j];
     }
+  }
+  bool good = true;
+  for (int j = 0; j < count; ++j) {
+    const Real d = own.pivot[j], size = d < Real(0) ? -d : d;
+    good &= size > Real(0) && size <= __DBL_MAX__;
+    own.sign[j] = d < Real(0) ? -Real(1) : Real(1);
+    own.inverse[j] = own.sign[j] / static_cast<Real>(__builtin_sqrt(size));
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < count; ++j) {
+    const Real by = own.sign[j] * own.inverse[j];
+#pragma GCC unroll 8
+    for (int i = j + 1; i < count; ++i) own.U[j][i] = A[j][i] * by;
   }
   Slice Y[count][kSlices];  // rows of L^-1
 #pragma GCC unroll 8
@@ -257,18 +270,8 @@ bool factor_square(const Real* block, int stride, const Real* least, Square& own
     for (int j = 0; j < i; ++j) {
       for (int p = 0; p <= j / kSlice; ++p) Y[i][p] -= Y[j][p] * L[i][j];
     }
-  }
-  bool good = true;
-#pragma GCC unroll 8
-  for (int j = 0; j < count; ++j) {
-    const Real d = own.pivot[j], size = d < Real(0) ? -d : d;
-    good &= size > Real(0) && size <= __DBL_MAX__;
-    own.sign[j] = d < Real(0) ? -Real(1) : Real(1);
-    const Real by = Real(1) / static_cast<Real>(__builtin_sqrt(size));
-    own.inverse[j] = own.sign[j] * by;
-#pragma GCC unroll 4
-    for (int p = j / kSlice; p < kSlices; ++p) store_slice(own.U[j] + p * kSlice, S[j][p] * by);
-    for (int p = 0; p <= j / kSlice; ++p) store_slice(own.back[j] + p * kSlice, Y[j][p] * by);
+    const Real by = own.sign[i] * own.inverse[i];
+    for (int p = 0; p <= i / kSlice; ++p) store_slice(own.back[i] + p * kSlice, Y[i][p] * by);
   }
   return good;
 }

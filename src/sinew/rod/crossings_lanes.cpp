@@ -143,10 +143,15 @@ void store(const Vector& v, Eight (&to)[3], int first) {
   }
 }
 
-void add(const Vector& v, double* sum) {
-  sum[0] += total(v.x);
-  sum[1] += total(v.y);
-  sum[2] += total(v.z);
+void add(const Vector& v, Eight (&sum)[3], int first) {
+  lanes::store(sum[0] + first, load(sum[0] + first) + v.x);
+  lanes::store(sum[1] + first, load(sum[1] + first) + v.y);
+  lanes::store(sum[2] + first, load(sum[2] + first) + v.z);
+}
+
+void add(const Vector& above, const Vector& below, Eight (&sum)[6], int first) {
+  const Lanes numbers[6] = {above.x, above.y, above.z, below.x, below.y, below.z};
+  for (int i = 0; i < 6; ++i) lanes::store(sum[i] + first, load(sum[i] + first) + numbers[i]);
 }
 
 /// A^T B.
@@ -154,46 +159,112 @@ Matrix transposed_times(const Matrix& A, const Matrix& B) {
   return {lanes::transposed_times(A, B.c0), lanes::transposed_times(A, B.c1), lanes::transposed_times(A, B.c2)};
 }
 
-[[gnu::flatten]] void cross(const Crossings& given, Crossed& crossed) {
-  crossed = {};
-  const Beginning& from = given.from;
-  const Matrix R = all(from.R);
-  for (int first = 0; first < given.count; first += kWidth) {
-    const Lanes length = load(given.length + first);
-    const Vector rho = all(from.translation) * length, f = all(from.rotation) * length;
+/// Exponentials of some sections.
+struct Exponential {
+  Matrix R;  ///< where they begin
+  Lanes length;
+  Vector rho;
+  Tangent map;
+  Vector end;
+
+  Exponential(const SectionLanes& from, const Lanes& own_length, const Vector& f, const Lanes& z, const Stumpff& of,
+              int first)
+      : R(part(from.R, first)),
+        length(own_length),
+        rho(part(from.translation, first) * own_length),
+        map(f, z, of.C),
+        end(part(from.p, first) + R * (map * rho)) {}
+};
+
+/// The loads beyond them.
+struct Loads {
+  Vector moment, force, bending_moment, bending_force;
+  Matrix second;
+  Vector lever;
+  Lanes weight;
+};
+
+void cross(const Exponential& to, const Loads& beyond, CrossedLanes& crossed, int first) {
+  // The twists of the exponential: it turns what lies beyond by `turn` about the origin and moves that by `move`.
+  const Matrix turn = to.R * to.map.matrix(), shift = to.R * to.map.gradient(to.rho),
+               move = shift + cross(to.end, turn);
+  const Vector& world = beyond.bending_force;
+  const Vector bending = beyond.bending_moment - cross(to.end, world);
+  const Vector force = lanes::transposed_times(to.R, world), moment = lanes::transposed_times(to.R, bending);
+  // The moment about the end changes as the end moves.
+  const Matrix H =
+      to.map.transposed_gradient(moment) + to.map.hessian(to.rho, force) + transposed_times(turn, cross(world, shift));
+  // K of rod/beyond: its upper left is the trace of `second` less itself.
+  const Lanes trace = beyond.second.c0.x + beyond.second.c1.y + beyond.second.c2.z;
+  const Matrix above = turn * trace - beyond.second * turn + cross(beyond.lever - world, move);
+  const Matrix below = move * beyond.weight - cross(beyond.lever, turn);
+  const Matrix tangent = H + transposed_times(turn, above) + transposed_times(move, below);
+  const Vector gradient = lanes::transposed_times(turn, beyond.moment) + lanes::transposed_times(move, beyond.force);
+  const Lanes square = to.length * to.length;
+  add(gradient * to.length, crossed.gradient, first);
+  add(above.c0 * to.length, below.c0 * to.length, crossed.KT[0], first);
+  add(above.c1 * to.length, below.c1 * to.length, crossed.KT[1], first);
+  add(above.c2 * to.length, below.c2 * to.length, crossed.KT[2], first);
+  add(tangent.c0 * square, crossed.tangent[0], first);
+  add(tangent.c1 * square, crossed.tangent[1], first);
+  add(tangent.c2 * square, crossed.tangent[2], first);
+}
+
+[[gnu::flatten]] void cross(const SectionLanes& sections, const CrossingLanes& crossing, CrossedLanes& crossed) {
+  for (int first = 0; first < sections.count; first += kWidth) {
+    const Lanes length = load(crossing.length + first);
+    const Vector f = part(sections.rotation, first) * length;
     const Lanes z = dot(f, f);
-    const Tangent map(f, z, Stumpff(z).C);
-    const Vector end = all(from.p) + R * (map * rho);
-    // The twists of the exponential: it turns what lies beyond by `turn` about the origin and moves that by `move`.
-    const Matrix turn = R * map.matrix(), shift = R * map.gradient(rho), move = shift + cross(end, turn);
-    const Vector world = part(given.bending_force, first);
-    const Vector bending = part(given.bending_moment, first) - cross(end, world);
-    const Vector force = lanes::transposed_times(R, world), moment = lanes::transposed_times(R, bending);
-    // The moment about the end changes as the end moves.
-    const Matrix H =
-        map.transposed_gradient(moment) + map.hessian(rho, force) + transposed_times(turn, cross(world, shift));
-    const Vector lever = part(given.lever, first);
-    const Matrix above = part(given.turning, first) * turn + cross(lever - world, move);
-    const Matrix below = move * load(given.weight + first) - cross(lever, turn);
-    const Matrix tangent = H + transposed_times(turn, above) + transposed_times(move, below);
-    const Vector gradient = lanes::transposed_times(turn, part(given.moment, first)) +
-                            lanes::transposed_times(move, part(given.force, first));
-    const Lanes square = length * length;
-    add(gradient * length, crossed.gradient);
-    add(above.c0 * length, crossed.KT[0]);
-    add(above.c1 * length, crossed.KT[1]);
-    add(above.c2 * length, crossed.KT[2]);
-    add(below.c0 * length, crossed.KT[0] + 3);
-    add(below.c1 * length, crossed.KT[1] + 3);
-    add(below.c2 * length, crossed.KT[2] + 3);
-    add(tangent.c0 * square, crossed.tangent[0]);
-    add(tangent.c1 * square, crossed.tangent[1]);
-    add(tangent.c2 * square, crossed.tangent[2]);
+    const Exponential to(sections, length, f, z, Stumpff(z), first);
+    const LoadLanes& own = crossing.beyond;
+    const Loads beyond = {part(own.moment, first), part(own.force, first), part(own.bending_moment, first),
+                          part(own.bending_force, first), part(own.second, first), part(own.lever, first),
+                          load(own.weight + first)};
+    cross(to, beyond, crossed, first);
+  }
+}
+
+// Points x = Q o feel w x - b: sums of w x, of x b^T, whose skew part is that of -x x f, and of w x x^T.
+[[gnu::flatten]] void meet(const SectionLanes& sections, const double (&gravity)[3], bool bends, StationLanes& station,
+                           CrossedLanes& crossed, Eight& acting) {
+  for (int first = 0; first < sections.count; first += kWidth) {
+    const Lanes length = load(station.length + first), none = {};
+    const Vector f = part(sections.rotation, first) * length;
+    const Lanes z = dot(f, f);
+    const Stumpff of(z);
+    const Exponential to(sections, length, f, z, of, first);
+    const Matrix frame = to.R * RotationMap{f, z, of.C[1], of.C[2]}.matrix();
+    const Matrix Q = {to.end, frame.c1, frame.c2}, weight = part(station.weight, first),
+                 pull = part(station.pull, first);
+    const Vector lever = Q * weight.c0, force = lever - pull.c0;
+    const Matrix pulled = outer(Q.c0, pull.c0) + outer(Q.c1, pull.c1) + outer(Q.c2, pull.c2);
+    const Vector moment = {pulled.c1.z - pulled.c2.y, pulled.c2.x - pulled.c0.z, pulled.c0.y - pulled.c1.x};
+    Loads beyond = {moment, force, moment, force, pulled, lever, weight.c0.x};
+    if (!bends) {
+      const Matrix QJ = Q * weight;
+      beyond.bending_moment = beyond.bending_force = {none, none, none};
+      beyond.second = outer(QJ.c0, Q.c0) + outer(QJ.c1, Q.c1) + outer(QJ.c2, Q.c2);
+    }
+    const Vector heavy = all(gravity) * load(station.mass + first), inertia = force + heavy;
+    Lanes size = dot(inertia, inertia);
+    for (int k = 0; k < kWidth; ++k) size[k] = __builtin_sqrt(size[k]);
+    lanes::store(acting + first, load(acting + first) + size);
+    LoadLanes& own = station.loads;
+    store(beyond.moment, own.moment, first);
+    store(beyond.force, own.force, first);
+    store(beyond.bending_moment, own.bending_moment, first);
+    store(beyond.bending_force, own.bending_force, first);
+    store(beyond.second.c0, own.second[0], first);
+    store(beyond.second.c1, own.second[1], first);
+    store(beyond.second.c2, own.second[2], first);
+    store(beyond.lever, own.lever, first);
+    lanes::store(own.weight + first, beyond.weight);
+    cross(to, beyond, crossed, first);
   }
 }
 
 }  // namespace
 
-const RodKernels SINEW_KERNELS{SINEW_NAME, cross, reach};
+const RodKernels SINEW_KERNELS{SINEW_NAME, cross, meet, reach};
 
 }  // namespace sinew::rod

@@ -2,116 +2,17 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/linalg/sized.hpp"
-#include "sinew/rod/crossings.hpp"
+#include "sinew/rod/beyond.hpp"
+#include "sinew/rod/together.hpp"
 
 namespace sinew::rod {
 
 namespace {
 
 using lie::hat;
-
-/// Loads on what lies beyond, summed about the origin: what any number of them does is told by these few sums.
-class Beyond {
- public:
-  void add(const Vec3& x, const PointLoad& load) {
-    const Vec3 moment = x.cross(load.force) + load.moment;
-    wrench_.head<3>() += moment;
-    wrench_.tail<3>() += load.force;
-    const Vec3 weighted = load.weight * x;
-    weight_ += load.weight;
-    lever_ += weighted;
-    if (!load.bends) {
-      outside_.head<3>() += moment;
-      outside_.tail<3>() += load.force;
-    }
-    if (load.follower) {
-      second_ += x * weighted.transpose();
-      carried_.head<3>() += moment;
-      carried_.tail<3>() += load.force;
-    } else {
-      second_ += x * (load.bends ? Vec3(weighted - load.force) : weighted).transpose();
-      moment_ += load.moment;
-    }
-    if (load.stiffness) {
-      Eigen::Matrix<double, 3, 6> J;  // of x by a twist
-      J << -hat(x), Mat3::Identity();
-      add_springs(J.transpose() * *load.stiffness * J);
-    }
-  }
-  void add(const Beyond& other) {
-    if (other.sprung_) add_springs(other.springs_);
-    wrench_ += other.wrench_;
-    weight_ += other.weight_;
-    lever_ += other.lever_;
-    second_ += other.second_;
-    carried_ += other.carried_;
-    outside_ += other.outside_;
-    moment_ += other.moment_;
-  }
-
-  /// Moment, force.
-  const Vec6& wrench() const { return wrench_; }
-  /// The part of it that takes part in the tangent.
-  Vec6 bending() const { return wrench_ - outside_; }
-
-  /// Of coordinates j nearer to the base and k, the second derivatives are T_j^T K T_k and (U T_k)^T T_j; for loads
-  /// with a potential U = K. Weights answer the acceleration v + omega x X; a force that stays is moved by it; a wrench
-  /// that is carried along does not change with what comes later, and a moment that stays has a later axis turn under
-  /// it.
-  Mat6 K() const { return sprung(assembled(Vec3(carried_.head<3>()), bending().tail<3>(), carried_.tail<3>())); }
-  Mat6 U() const { return sprung(assembled(moment_, bending().tail<3>() - carried_.tail<3>(), Vec3::Zero())); }
-
-  /// Without springs, and of loads that have a potential: what all crossings need of it, as number k of them.
-  bool sprung() const { return sprung_; }
-  void put(int k, Crossings& crossings) const {
-    const Vec6 own = bending();
-    const double trace = second_.trace();
-    for (int i = 0; i < 3; ++i) {
-      crossings.moment[i][k] = wrench_[i];
-      crossings.force[i][k] = wrench_[3 + i];
-      crossings.bending_moment[i][k] = own[i];
-      crossings.bending_force[i][k] = own[3 + i];
-      crossings.lever[i][k] = lever_[i];
-      for (int j = 0; j < 3; ++j) crossings.turning[j][i][k] = (i == j ? trace : 0.0) - second_(i, j);
-    }
-    crossings.weight[k] = weight_;
-  }
-
- private:
-  void add_springs(const Mat6& more) {
-    if (sprung_) {
-      springs_ += more;
-    } else {
-      springs_ = more;
-    }
-    sprung_ = true;
-  }
-  Mat6 sprung(Mat6 K) const {
-    if (sprung_) K += springs_;
-    return K;
-  }
-  Mat6 assembled(const Vec3& moment, const Vec3& moved, const Vec3& carried) const {
-    Mat6 K;
-    K.topLeftCorner<3, 3>() = -second_ - hat(moment);
-    K.topLeftCorner<3, 3>().diagonal().array() += second_.trace();
-    K.topRightCorner<3, 3>() = hat(lever_ - moved);
-    K.bottomLeftCorner<3, 3>() = -hat(lever_ + carried);
-    K.bottomRightCorner<3, 3>() = weight_ * Mat3::Identity();
-    return K;
-  }
-
-  Vec6 wrench_ = Vec6::Zero();
-  double weight_ = 0.0;          ///< sum w
-  Vec3 lever_ = Vec3::Zero();    ///< sum w x
-  Mat3 second_ = Mat3::Zero();   ///< sum x (w x - f)^T, f the forces that stay
-  Vec6 carried_ = Vec6::Zero();  ///< the wrench of followers
-  Vec6 outside_ = Vec6::Zero();  ///< the wrench of loads that stay out of the tangent
-  Vec3 moment_ = Vec3::Zero();   ///< sum of the moments that stay
-  bool sprung_ = false;
-  Mat6 springs_;  ///< sum of stiffnesses, by twists; only if there are any
-};
 
 using linalg::Columns;
 using linalg::Square;
@@ -170,13 +71,16 @@ Mat6 local_tangent(const Piece& piece, const PieceMotion& motion, const Vec6& wr
 /// Walks the rod from the tip to the base with the sums of all loads met.
 class Walk {
  public:
-  Walk(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations)
+  Walk(const Configuration& shape, std::span<const PointLoad> loads, const Inertia& inertia, Equations& equations)
       : shape_(shape),
         rod_(*shape.rod),
         loads_(loads),
+        inertia_(inertia),
         equations_(equations),
         symmetric_(equations.chain.symmetric()),
-        left_(loads.size()) {}
+        left_(loads.size()),
+        stations_left_(inertia.stations.size()),
+        together_(shape, inertia, equations) {}
 
   void run() {
     balance(rod_.length(), shape_.R.back(), shape_.p.back());
@@ -193,32 +97,29 @@ class Walk {
   template <int M>
   void pass_section(int i);
   template <int M>
-  void meet_loads(int i, int k, bool all);
+  void meet_all(int i, int k, bool all);
+  template <int M>
+  void meet_loads(int i, int k);
+  template <int M>
+  void meet_station(int i, int k);
   template <int M>
   Crossing<M> cross(std::span<const Piece> pieces, int i, const Beyond& beyond, const Weights& weights,
                     const PartialWeights* slide) const;
   template <int M>
   void add(int i, int k, const Crossing<M>& crossing);
-  void begin_together(int i);
-  template <int M>
-  bool cross_together(int i, double length, const Beyond& beyond);
-  template <int M>
-  void add_together(int i);
   void add_base();
 
   const Configuration& shape_;
   const Rod& rod_;
   std::span<const PointLoad> loads_;
+  const Inertia& inertia_;
   Equations& equations_;
   bool symmetric_;
   bool stretches_ = false;  ///< the section's coordinates do
   Beyond beyond_;
-  std::size_t left_;  ///< loads not yet met
+  std::size_t left_, stations_left_;  ///< loads and stations not yet met
   Branch branch_;     ///< to the loads at hand
-
-  const RodKernels& kernels_ = rod_kernels();
-  double longest_ = 0.0;  ///< exponential of the section that can be crossed with others; 0: none can
-  Crossings crossings_{};
+  Together together_;
 };
 
 /// What the loads met so far need at s; called again there, after more of them, only the base's side of it changes.
@@ -237,101 +138,85 @@ template <int M>
 void Walk::pass_section(int i) {
   const Section& section = rod_.sections[i];
   stretches_ = section.stretches();
-  begin_together(i);
+  together_.begin(i, stations_left_);
   for (int k = shape_.first_step[i + 1] - 1; k >= shape_.first_step[i]; --k) {
     const Weights& weights = section.steps[static_cast<std::size_t>(k - shape_.first_step[i])].weights;
     const std::span<const Piece> whole(&shape_.pieces[static_cast<std::size_t>(shape_.steps[k].piece)],
                                        static_cast<std::size_t>(weights.rows()));
-    if (!cross_together<M>(i, weights(0, 0), beyond_)) add(i, k, cross<M>(whole, i, beyond_, weights, nullptr));
-    meet_loads<M>(i, k, i == 0 && k == 0);
+    if (!together_.cross(i, weights(0, 0), beyond_)) add(i, k, cross<M>(whole, i, beyond_, weights, nullptr));
+    meet_all<M>(i, k, i == 0 && k == 0);
   }
-  add_together<M>(i);
+  together_.end(i);
 }
 
-/// Exponentials of a section of constant strain that does not stretch are crossed together, in the registers' lanes.
-void Walk::begin_together(int i) {
-  longest_ = symmetric_ && !stretches_ ? longest_exponential(shape_.strains[i]) : 0.0;
-  if (longest_ > 0.0) crossings_.from = beginning(shape_.R[i], shape_.p[i] - shape_.origin, shape_.strains[i]);
-}
-
-/// Leaves a crossing to be made with others, unless that cannot be.
+/// What lies in a step, or all that is left, from its end to its beginning.
 template <int M>
-bool Walk::cross_together(int i, double length, const Beyond& beyond) {
-  if (!(std::abs(length) < longest_) || beyond.sprung()) return false;
-  if (crossings_.count == kCrossings) add_together<M>(i);
-  crossings_.length[crossings_.count] = length;
-  beyond.put(crossings_.count++, crossings_);
-  return true;
-}
-
-template <int M>
-void Walk::add_together(int i) {
-  if (crossings_.count == 0) return;
-  std::fill(crossings_.length + crossings_.count, crossings_.length + kCrossings, 0.0);
-  Crossed all;
-  kernels_.cross(crossings_, all);
-  crossings_.count = 0;
-  const std::vector<Mode>& modes = rod_.sections[i].modes;
-  for (std::size_t b = 0; b < modes.size(); ++b) {
-    const int at = rod_.first[i] + static_cast<int>(b), strain = modes[b].strain;
-    equations_.r[rod_.base_coordinates() + at] += all.gradient[strain];
-    equations_.chain.V.col(at) += Vec6::Map(all.KT[strain]);
-    for (std::size_t a = 0; a < modes.size(); ++a)
-      equations_.chain.D(static_cast<Eigen::Index>(a), at) += all.tangent[strain][modes[a].strain];
-  }
-}
-
-/// Loads that lie in a step, or all that are left.
-template <int M>
-void Walk::meet_loads(int i, int k, bool all) {
-  const Section& section = rod_.sections[i];
-  const double begin = section.steps[static_cast<std::size_t>(k - shape_.first_step[i])].begin;
-  while (left_ > 0 && (loads_[left_ - 1].s >= begin || all)) {
-    // All loads at one abscissa together.
-    const PointLoad& last = loads_[left_ - 1];
-    const double s = last.s;
-    const bool slides = last.slide >= 0;
-    const Mat3* R = &branch_.R;
-    const Vec3* p = &branch_.p;
-    std::span<const Piece> pieces;
-    const Weights* weights = &branch_.weights.value;
-    if (last.station >= 0) {
-      const Configuration::StationFrame& station = shape_.stations[last.station];
-      R = &station.R;
-      p = &station.p;
-      weights = &rod_.stations[last.station].weights;
-      if (station.piece >= 0)
-        pieces = {&shape_.station_pieces[station.piece], static_cast<std::size_t>(weights->rows())};
+void Walk::meet_all(int i, int k, bool all) {
+  const double begin = rod_.sections[i].steps[static_cast<std::size_t>(k - shape_.first_step[i])].begin;
+  const double from = all ? -INFINITY : begin;
+  for (;;) {
+    const double load = left_ > 0 ? loads_[left_ - 1].s : -INFINITY;
+    const double station = stations_left_ > 0 ? rod_.stations[stations_left_ - 1].s : -INFINITY;
+    if (!(std::max(load, station) >= from) || left_ + stations_left_ == 0) return;
+    if (stations_left_ > 0 && station >= load) {
+      meet_station<M>(i, k);
     } else {
-      branch_in(shape_, i, k, s, branch_);
-      pieces = branch_.pieces;
+      meet_loads<M>(i, k);
     }
-    Beyond here;
-    bool jump = false;
-    do {
-      const PointLoad& load = loads_[--left_];
-      here.add(*p + *R * load.offset - shape_.origin, load);
-      jump |= !load.spread;
-    } while (left_ > 0 && loads_[left_ - 1].s == s && !slides && loads_[left_ - 1].slide < 0);  // each slide by itself
-    if (slides || !cross_together<M>(i, (*weights)(0, 0), here)) {
-      if (pieces.empty()) {
-        branch_in(shape_, i, k, s, branch_);
-        pieces = branch_.pieces;
-      }
-      const Crossing<M> crossing = cross<M>(pieces, i, here, *weights, slides ? &branch_.weights : nullptr);
-      add(i, k, crossing);
-      if (slides) {
-        Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
-        slide.attachment.link = i;
-        slide.attachment.g = crossing.Kt;
-        slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
-        slide.second = crossing.second;
-      }
-    }
-    if (jump) balance(s, *R, *p);
-    beyond_.add(here);
-    if (jump) balance(s, *R, *p);
   }
+}
+
+template <int M>
+void Walk::meet_station(int i, int k) {
+  const std::size_t number = --stations_left_;
+  if (together_.met(number, beyond_)) return;
+  const Station& station = rod_.stations[number];
+  Configuration::StationFrame frame{Mat3(), Vec3(), -1};
+  if (!shape_.stations.empty()) frame = shape_.stations[number];
+  std::span<const Piece> pieces;
+  if (frame.piece >= 0) {
+    pieces = {&shape_.station_pieces[static_cast<std::size_t>(frame.piece)],
+              static_cast<std::size_t>(station.weights.rows())};
+  } else {
+    branch_in(shape_, i, k, station.s, branch_);
+    frame = {branch_.R, branch_.p, -1};
+    pieces = branch_.pieces;
+  }
+  Beyond here;
+  here.add(placed(shape_, frame), inertia_.stations[number], inertia_.bends);
+  equations_.acting += (here.wrench().tail<3>() + station.spread(0, 0) * inertia_.gravity).norm();
+  add(i, k, cross<M>(pieces, i, here, station.weights, nullptr));
+  beyond_.add(here);
+}
+
+/// Those at one abscissa together, but each slide by itself.
+template <int M>
+void Walk::meet_loads(int i, int k) {
+  const double s = loads_[left_ - 1].s;
+  const bool slides = loads_[left_ - 1].slide >= 0;
+  branch_in(shape_, i, k, s, branch_);
+  Beyond here;
+  bool jump = false;
+  do {
+    const PointLoad& load = loads_[--left_];
+    here.add(branch_.p + branch_.R * load.offset - shape_.origin, load);
+    jump |= !load.spread;
+  } while (left_ > 0 && loads_[left_ - 1].s == s && !slides && loads_[left_ - 1].slide < 0);
+  const Weights& weights = branch_.weights.value;
+  if (slides || !together_.cross(i, weights(0, 0), here)) {
+    const Crossing<M> crossing = cross<M>(branch_.pieces, i, here, weights, slides ? &branch_.weights : nullptr);
+    add(i, k, crossing);
+    if (slides) {
+      Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
+      slide.attachment.link = i;
+      slide.attachment.g = crossing.Kt;
+      slide.attachment.b = crossing.slope + shape_.steps[k].before.transpose() * crossing.Kt;
+      slide.second = crossing.second;
+    }
+  }
+  if (jump) balance(s, branch_.R, branch_.p);
+  beyond_.add(here);
+  if (jump) balance(s, branch_.R, branch_.p);
 }
 
 /// With `slide` the abscissa is one more coordinate, through the weights' derivatives.
@@ -434,11 +319,41 @@ void make_equations(const Configuration& shape, bool symmetric, int slides, Equa
   equations.base.setZero(rod.base_coordinates(), rod.base_coordinates());
   equations.slides.resize(static_cast<std::size_t>(slides));
   equations.internal.clear();
+  equations.acting = 0.0;
   equations.internal.reserve(static_cast<std::size_t>(rod.count()) + 1);
 }
 
 void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations) {
-  Walk(shape, loads, equations).run();
+  add_loads(shape, loads, Inertia{}, equations);
+}
+
+void add_loads(const Configuration& shape, std::span<const PointLoad> loads, const Inertia& inertia,
+               Equations& equations) {
+  Walk(shape, loads, inertia, equations).run();
+}
+
+void station_inertia(const Rod& rod, const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, double rate,
+                     const Vec3& gravity, const Vec3& origin, std::vector<StationInertia>& inertia) {
+  inertia.resize(rod.stations.size());
+  for (std::size_t k = 0; k < rod.stations.size(); ++k) {
+    const Station& station = rod.stations[k];
+    StationInertia& own = inertia[k];
+    own.weight = rate * rate * station.spread;
+    own.pull.setZero();
+    for (int i = station.first_mass; i < station.first_mass + station.masses; ++i) {
+      const MassPoint& mass = rod.masses[static_cast<std::size_t>(i)];
+      const Vec3 b = mass.mass * (rate * (rate * (positions.col(i) - origin) + velocities.col(i)) + gravity);
+      own.pull.col(0) += b;
+      own.pull.col(1) += mass.offset.y() * b;
+      own.pull.col(2) += mass.offset.z() * b;
+    }
+  }
+}
+
+Mat3 placed(const Configuration& shape, const Configuration::StationFrame& station) {
+  Mat3 Q;
+  Q << station.p - shape.origin, station.R.rightCols<2>();
+  return Q;
 }
 
 void add_elasticity(const Rod& rod, const Eigen::VectorXd& q, const Eigen::VectorXd& start, double rate,

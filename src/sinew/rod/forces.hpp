@@ -19,9 +19,28 @@ struct PointLoad {
   bool follower = false;
   bool bends = true;    ///< false: the force has no part in the tangent (a predictor's)
   bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
-  int station = -1;     ///< at this one of the rod's, which the configuration then knows
   int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
   const Mat3* stiffness = nullptr;  ///< [N/m] world axes, symmetric, beside the weight
+};
+
+/// The mass points of a station in a time step, all at once. With o = (1, y, z) of its offset, Q = [p, R e_y, R e_z] of
+/// the station's frame and x = Q o from the origin, a point feels f = w x - b, where w = m / h^2 and b is known.
+struct StationInertia {
+  Mat3 weight = Mat3::Zero();  ///< sum w o o^T
+  Mat3 pull = Mat3::Zero();    ///< sum b o^T
+};
+/// By backward Euler and with weights: b = m (x_0 / h^2 + v_0 / h + g), of the points' positions (in space) and
+/// velocities at the start of the step; `rate` is 1 / h. In the order of the rod's stations.
+void station_inertia(const Rod& rod, const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, double rate,
+                     const Vec3& gravity, const Vec3& origin, std::vector<StationInertia>& inertia);
+/// Q, from the configuration's origin.
+Mat3 placed(const Configuration& shape, const Configuration::StationFrame& station);
+
+/// Inertia of all of a rod's stations.
+struct Inertia {
+  std::span<const StationInertia> stations;
+  Vec3 gravity = Vec3::Zero();
+  bool bends = true;  ///< false: it has no part in the tangent but for its weights (a predictor's)
 };
 
 /// What an abscissa s that carries a force f adds to the equations of a rod: f . gamma_qs and f . gamma_ss.
@@ -44,6 +63,7 @@ struct Equations {
   Eigen::MatrixXd base;  ///< tangent of the base's coordinates among themselves; with the strains: T_b^T V, U^T T_b
   std::vector<Slide> slides;
   std::vector<Balance> internal;  ///< from base to tip, at the sections' ends and every concentrated load
+  double acting = 0.0;  ///< [N] inertia of all stations, their weight apart: in free fall the two cancel
 };
 
 /// All zeros. Follower forces and moments make the tangent unsymmetric.
@@ -57,6 +77,9 @@ bool conservative(std::span<const PointLoad> loads);
 ///     chain += sum J_i^T (w_i + S_i) J_i + d(J_i^T f_i)/dq     (exact),
 /// and fills slides and internal. `loads` must be sorted by s.
 void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equations& equations);
+/// The same with inertia.
+void add_loads(const Configuration& shape, std::span<const PointLoad> loads, const Inertia& inertia,
+               Equations& equations);
 
 /// Adds elastic forces K q of all sections, and viscous ones C (q - q_start) rate.
 void add_elasticity(const Rod& rod, const Eigen::VectorXd& q, const Eigen::VectorXd& start, double rate,

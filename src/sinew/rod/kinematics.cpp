@@ -236,13 +236,13 @@ void each_station(const Configuration& shape, std::vector<Piece>* pieces, const 
     const bool kept = pieces && shape.rod->sections[first.section].stretches();
     const double longest = kept ? 0.0 : longest_exponential(strains);
     int count = 0;
-    for (; count < kCrossings && k + count < stations.size(); ++count) {
+    for (; count < kLanes && k + count < stations.size(); ++count) {
       const Station& station = stations[k + count];
       if (station.section != first.section || !(station.weights(0, 0) < longest)) break;
       length[count] = station.weights(0, 0);
     }
     if (count > 0) {
-      std::fill(length + count, length + kCrossings, 0.0);
+      std::fill(length + count, length + kLanes, 0.0);
       kernels.reach(beginning(start.R, start.p, strains), length, count, reached);
       for (int i = 0; i < count; ++i, ++k) {
         Mat3 R;

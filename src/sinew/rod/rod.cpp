@@ -70,8 +70,11 @@ std::vector<Station> stations_of(const std::vector<Section>& sections, const std
   int section = 0, step = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double s = masses[i].s;
+    const Vec3 o(1.0, masses[i].offset.y(), masses[i].offset.z());
+    const Mat3 spread = masses[i].mass * o * o.transpose();
     if (!stations.empty() && stations.back().s == s) {
       ++stations.back().masses;
+      stations.back().spread += spread;
       continue;
     }
     const auto at = [&]() -> const Section& { return sections[static_cast<std::size_t>(section)]; };
@@ -80,7 +83,7 @@ std::vector<Station> stations_of(const std::vector<Section>& sections, const std
     while (step + 1 < static_cast<int>(steps.size()) && s >= steps[static_cast<std::size_t>(step)].end) ++step;
     const double from = steps[static_cast<std::size_t>(step)].begin;
     stations.push_back({s, section, step, static_cast<int>(i), 1,
-                        partial_weights(at().begin, at().end, degree_of(at()), from, s).value});
+                        partial_weights(at().begin, at().end, degree_of(at()), from, s).value, spread});
   }
   return stations;
 }

@@ -72,6 +72,7 @@ struct Station {
   int section = 0, step = 0;  ///< step: of the section
   int first_mass = 0, masses = 0;
   Weights weights;
+  Mat3 spread = Mat3::Zero();  ///< [kg, kg m, kg m^2] sum m o o^T, o = (1, y, z) of the points' offsets
 };
 
 struct Rod {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -73,10 +74,12 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
   solid::at_unknowns(body, r, forces.r);
   forces.reaction.resize(model.held());
   Eigen::Index held = 0;
-  for (Eigen::Index i = 0; i < r.size(); ++i) {
-    if (body.unknown(i) < 0) forces.reaction[held++] = std::exchange(r(i), 0.0);
+  for (Eigen::Index node = 0; node < r.cols(); ++node) {
+    for (int axis = 0; axis < 3 && !body.free(node); ++axis) {
+      if (body.unknown(axis, node) < 0) forces.reaction[held++] = std::exchange(r(axis, node), 0.0);
+    }
   }
-  forces.largest = r.colwise().norm().maxCoeff();
+  forces.largest = std::sqrt(r.colwise().squaredNorm().maxCoeff());
 }
 
 bool FreeMotion::factor(const StepContext& context, const State& iterate, int number, const SolidForces& forces,

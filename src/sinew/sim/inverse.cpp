@@ -72,7 +72,8 @@ void Inverse::begin(const Model& model, const State& start, const Goal& goal, do
 
 // The step is linear in the commands and in forces at contacts: its solution is that of the commands as they are plus
 // p_a times the answer to one more unit of each, and so with forces.
-void Inverse::look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment) {
+void Inverse::look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment,
+                   bool polished) {
   const Model& model = context.model;
   const auto n = static_cast<Eigen::Index>(model.sought.size());
   effector_errors(model, iterate, goal_, error_);
@@ -100,7 +101,11 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
     const int actuator = model.sought[static_cast<std::size_t>(a)];
     solve::CoupledSolution& response = responses_[static_cast<std::size_t>(a)];
     tell_motor(model, iterate, actuator, 1.0, unit_);
-    here.couple(unit_, response);
+    if (polished) {
+      here.answer(unit_, response);
+    } else {
+      here.couple(unit_, response);
+    }
     tell_motor(model, iterate, actuator, -1.0, unit_);
     if (!response.ok) {
       J_.col(a).setConstant(NAN);
@@ -263,7 +268,8 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
 }
 
 void Inverse::steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment) {
-  look(context, iterate, here, increment);
+  const bool polished = !here.touched();  // (with contacts the increment answers their forces, too)
+  look(context, iterate, here, increment, polished);
   problem_.e = weights_.cwiseProduct(base_);
   problem_.J = weights_.asDiagonal() * J_;
   problem_.L = weights_.asDiagonal() * L_;
@@ -287,7 +293,13 @@ void Inverse::steer(const StepContext& context, const State& iterate, Linearizat
     increment.reduced.dlambda += own * responses_[a].dlambda;
     for (std::size_t i = 0; i < increment.reduced.dq.size(); ++i) increment.reduced.dq[i] += own * responses_[a].dq[i];
   }
-  if (!here.touched()) return;
+  if (polished) {
+    told_ = here.side();
+    for (std::size_t a = 0; a < responses_.size(); ++a)
+      tell_motor(context.model, iterate, context.model.sought[a], steering_.p()[static_cast<Eigen::Index>(a)], told_);
+    here.polish(told_, increment);
+    return;
+  }
   moved_ = problem_.B * steering_.p();
   here.change_contacts(moved_, steering_.lambda(), increment);
 }

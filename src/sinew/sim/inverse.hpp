@@ -37,7 +37,9 @@ class Inverse {
   double reach = INFINITY;
 
   /// Responses to one more unit of each sought command, and of forces at contacts, at `here`, factored.
-  void look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment);
+  /// `polished`: what is made of it will be.
+  void look(const StepContext& context, const State& iterate, Linearization& here, const Increment& increment,
+            bool polished = false);
   /// How effectors give way to forces on them, contacts going on as they are. What was pushed no longer stands then.
   Eigen::MatrixXd compliance(const Model& model, Linearization& here);
   /// How forces at contacts follow the commands, for what is asked next.
@@ -58,7 +60,7 @@ class Inverse {
   double h_ = 0.0;
   std::vector<double> start_force_, start_position_;
   EffectorRows rows_;
-  solve::RightSide unit_;
+  solve::RightSide unit_, told_;
   std::vector<solve::CoupledSolution> responses_;
   Eigen::VectorXd error_, base_, weights_, forces_, moved_, lengths_, preferred_, penalty_;
   Eigen::MatrixXd J_, F_, X_;                  ///< d(errors, forces of motors, their places) / d commands

@@ -79,6 +79,12 @@ class Linearization {
   /// How multipliers move watched points [m], and, while the last forces on volumes still stand (`pushed`), these.
   void watched_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion);
 
+  /// What was last solved for, and what was `couple`d without looking at what is left of its equations; increments that
+  /// are sums of both are then polished as one, for the sum of their right sides.
+  const solve::RightSide& side() const { return side_; }
+  void answer(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.answer(side, solution); }
+  void polish(const solve::RightSide& side, Increment& increment) { factor_.polish(side, increment.reduced); }
+
   /// Contacts and rubbing points are part of what is solved here.
   bool touched() const { return contacts_ready_; }
   const ContactForces& contact_forces() const { return contact_forces_; }

@@ -12,7 +12,8 @@ namespace sinew {
 /// What one rod's equations are put together from; memory of the last time.
 struct RodParts {
   rod::Configuration shape;
-  std::vector<rod::PointLoad> loads, masses, sorted;
+  std::vector<rod::PointLoad> loads;
+  std::vector<rod::StationInertia> inertia;
   std::vector<linalg::Attachment> attachments;
   std::vector<int> border, order;  ///< of attachments: what each belongs to; sorted by link
   std::vector<int> slides;         ///< unknown of each

@@ -28,9 +28,7 @@ RodRows::RodRows(const StepContext& context, const State& iterate, int number, R
     : context_(context), iterate_(iterate), number_(number), reduced_(reduced), own_(reduced.rods[number]) {
   rod::reconfigure(context.model.rods[number].rod, base_of(context, iterate, number), iterate.rods[number].q,
                    own_.shape);
-  rod::add_stations(own_.shape);
   own_.loads.clear();
-  own_.masses.clear();
   own_.attachments.clear();
   own_.border.clear();
   own_.slides.clear();
@@ -49,34 +47,6 @@ void RodRows::attach(int border, const rod::CurvePoint& point, const Vec3& offse
   attachment.g << (point.position + point.R * offset - own_.shape.origin).cross(f), f;
   attachment.b.noalias() = point.twists.transpose().lazyProduct(attachment.g);
   own_.border.push_back(border);
-}
-
-void RodRows::add_masses() {
-  // Inertia of the mass points by backward Euler on their positions, and their weight.
-  const rod::Rod& rod = *own_.shape.rod;
-  const RodState& start = context_.start.rods[number_];
-  const double rate = context_.rate;
-  double acting = 0.0;  // inertia and weight each by themselves: in free fall they cancel
-  const double weight = context_.gravity.norm();
-  for (std::size_t k = 0; k < rod.stations.size(); ++k) {
-    const rod::Station& station = rod.stations[k];
-    const rod::Configuration::StationFrame& frame = own_.shape.stations[k];
-    for (int i = station.first_mass; i < station.first_mass + station.masses; ++i) {
-      const rod::MassPoint& mass = rod.masses[static_cast<std::size_t>(i)];
-      const Vec3 position = frame.p + frame.R * mass.offset;
-      const Vec3 acceleration = ((position - start.masses.col(i)) * rate - start.velocity.col(i)) * rate;
-      rod::PointLoad& load = own_.masses.emplace_back();
-      load.s = mass.s;
-      load.offset = mass.offset;
-      load.force = mass.mass * (acceleration - context_.gravity);
-      load.weight = mass.mass * rate * rate;
-      load.bends = !context_.at_start;
-      load.spread = true;
-      load.station = static_cast<int>(k);
-      acting += mass.mass * (acceleration.norm() + weight);
-    }
-  }
-  reduced_.scale = std::max(reduced_.scale, acting);
 }
 
 void RodRows::add_forces() {
@@ -155,20 +125,20 @@ void RodRows::finish() {
     if (actuator.line.rod != number_ || !actuator.tendon) continue;
     for (const double end : {actuator.tendon->from, actuator.tendon->to}) load({end, Vec3::Zero(), Vec3::Zero()});
   }
-  // Mass points are most of all loads, and sorted already.
-  const auto earlier = [](const rod::PointLoad& a, const rod::PointLoad& b) { return a.s < b.s; };
-  sort_few(own_.loads, earlier);
-  add_masses();
-  own_.sorted.resize(own_.loads.size() + own_.masses.size());
-  std::merge(own_.loads.begin(), own_.loads.end(), own_.masses.begin(), own_.masses.end(), own_.sorted.begin(),
-             earlier);
+  sort_few(own_.loads, [](const rod::PointLoad& a, const rod::PointLoad& b) { return a.s < b.s; });
+  const RodState& start = context_.start.rods[number_];
+  rod::station_inertia(rod, start.masses, start.velocity, context_.rate, context_.gravity, own_.shape.origin,
+                       own_.inertia);
   rod::Equations& equations = own_.equations;
   solve::ChainPart& part = problem().chains[number_];
   std::swap(part.chain, equations.chain);  // their memory back
   std::swap(reduced_.internal[number_], equations.internal);
-  rod::make_equations(own_.shape, rod::conservative(own_.sorted), static_cast<int>(own_.slides.size()), equations);
-  rod::add_loads(own_.shape, own_.sorted, equations);
-  rod::add_elasticity(rod, iterate_.rods[number_].q, context_.start.rods[number_].q, context_.rate, equations);
+  rod::make_equations(own_.shape, rod::conservative(own_.loads), static_cast<int>(own_.slides.size()), equations);
+  rod::add_loads(own_.shape, own_.loads, {own_.inertia, context_.gravity, !context_.at_start}, equations);
+  double weight = 0.0;
+  for (const rod::Station& station : rod.stations) weight += station.spread(0, 0) * context_.gravity.norm();
+  reduced_.scale = std::max(reduced_.scale, equations.acting + weight);
+  rod::add_elasticity(rod, iterate_.rods[number_].q, start.q, context_.rate, equations);
   for (std::size_t i = 0; i < own_.slides.size(); ++i) {
     problem().B.add(own_.slides[i], own_.slides[i], equations.slides[i].second);
     own_.attachments.push_back(equations.slides[i].attachment);

@@ -30,7 +30,6 @@ class RodRows {
   void finish();
 
  private:
-  void add_masses();
   void add_forces();
   void add_tendons(solve::ChainPart& part);
   void measure();

@@ -43,6 +43,11 @@ void add_block(const BlockPlace& place, const Entry& entry, double* values) {
   }
 }
 
+/// The same of a multiple of the unit matrix.
+void add_unit(const BlockPlace& place, double value, double* values) {
+  for (int i = 0; i < 3; ++i) values[place.at + 5 * static_cast<std::uint32_t>(i)] += value;
+}
+
 using Pattern = linalg::SparseFactor::Matrix;
 
 /// The lower triangle over the unknowns: nodes meet that share a cell.
@@ -263,10 +268,7 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
   solid::assemble_tangent(body, start, x, deformation, kind, std::cref(insert), std::cref(insert_batch));
   const double factor = solid::mass_factor(body, start.rate);
   const BlockPlace* place = model.mass_places.data();
-  each_mass(body, [&](int, int, double mass) {
-    add_block(
-        *place++, [=](int i, int j) { return i == j ? factor * mass : 0.0; }, values);
-  });
+  each_mass(body, [&](int, int, double mass) { add_unit(*place++, factor * mass, values); });
   if (model.springs.size() == 0) return;
   place = model.mass_places.data();
   each_mass(body, [&](int row, int column, double) {
@@ -281,9 +283,7 @@ void add_grip(const SolidModel& model, const Grip& grip, double* values) {
   const BlockPlace* place = model.mass_places.data();
   each_mass(model.body, [&](int row, int column, double) {
     const BlockPlace& own = *place++;
-    if (row != grip.node || column != grip.node) return;
-    add_block(
-        own, [&](int i, int j) { return i == j ? grip.stiffness : 0.0; }, values);
+    if (row == grip.node && column == grip.node) add_unit(own, grip.stiffness, values);
   });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/internal.hpp"
@@ -73,12 +74,17 @@ bool slides(const Model& model, const ContactState& contact) {
 
 namespace {
 
-/// Visits every number of a state in the order of the record (kStateLayout); sizes are the model's.
+/// Visits every number of a state in the order of the record (kStateLayout); sizes are the model's. A visitor that takes
+/// arrays is given these as they are.
 template <class StateType, class Visit>
 void each_number(StateType& state, const Visit& visit) {
   visit(state.time);
   const auto array = [&visit](auto& values) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) visit(values.data()[i]);
+    if constexpr (requires { visit(values); }) {
+      visit(values);
+    } else {
+      for (Eigen::Index i = 0; i < values.size(); ++i) visit(values.data()[i]);
+    }
   };
   for (auto& solid : state.solids) {
     array(solid.x);
@@ -131,7 +137,14 @@ constexpr std::size_t kContactNumbers = 14;
 
 bool finite(const State& state) {
   bool all = true;
-  each_number(state, [&all](double value) { all &= std::isfinite(value); });
+  const auto look = [&all](const auto& what) {
+    if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(what)>>) {
+      all &= std::isfinite(static_cast<double>(what));
+    } else {
+      all &= (what.array() * 0.0).sum() == 0.0;  // 0 times what is not finite is NaN
+    }
+  };
+  each_number(state, look);
   for (const ContactState& contact : state.contacts) all &= contact.force.allFinite();
   return all;
 }

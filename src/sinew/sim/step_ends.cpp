@@ -18,7 +18,7 @@ void place_held(const StepContext& context, State& iterate) {
   for (std::size_t i = 0; i < iterate.solids.size(); ++i) {
     const SolidModel& model = context.model.solids[i];
     for (int node = 0; node < model.body.nodes(); ++node) {
-      if (model.body.unknown.col(node).minCoeff() >= 0) continue;
+      if (model.body.free(node)) continue;
       const Vec3 held = apply(context.moved(model.carrier[node]), model.body.rest.col(node));
       for (int axis = 0; axis < 3; ++axis) {
         if (model.body.unknown(axis, node) < 0) iterate.solids[i].x(axis, node) = held[axis];

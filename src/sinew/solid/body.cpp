@@ -149,14 +149,24 @@ void sort_batches(Body& body, const std::vector<int>& rank) {
 
 void at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal, Eigen::VectorXd& u) {
   u.resize(body.unknowns);
-  for (Eigen::Index i = 0; i < nodal.size(); ++i) {
-    if (body.unknown(i) >= 0) u[body.unknown(i)] = nodal(i);
+  for (Eigen::Index node = 0; node < nodal.cols(); ++node) {
+    const bool free = body.free(node);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int own = body.unknown(axis, node);
+      if (free || own >= 0) u[own] = nodal(axis, node);
+    }
   }
 }
 
 void from_unknowns(const Body& body, const Eigen::VectorXd& u, Eigen::Matrix3Xd& nodal) {
   nodal.resize(3, body.nodes());
-  for (Eigen::Index i = 0; i < nodal.size(); ++i) nodal(i) = body.unknown(i) >= 0 ? u[body.unknown(i)] : 0.0;
+  for (Eigen::Index node = 0; node < nodal.cols(); ++node) {
+    const bool free = body.free(node);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int own = body.unknown(axis, node);
+      nodal(axis, node) = free || own >= 0 ? u[own] : 0.0;
+    }
+  }
 }
 
 namespace {
@@ -215,10 +225,10 @@ void add_forces(const Body& body, const StepStart& start, const Eigen::Matrix3Xd
 void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Deformation& deformation) {
   if (body.batches.empty()) return;
   const int n = body.nodes();
-  deformation.x.setZero(4, n + 1);
-  deformation.x.topLeftCorner(3, n) = x;
-  deformation.motion.setZero(4, n + 1);
-  if (start.rate > 0.0) deformation.motion.topLeftCorner(3, n) = x - start.x;
+  if (deformation.x.cols() != n + 1) deformation.x.setZero(4, n + 1);
+  deformation.x.topRows<3>().leftCols(n) = x;
+  if (deformation.motion.cols() != n + 1 || !(start.rate > 0.0)) deformation.motion.setZero(4, n + 1);
+  if (start.rate > 0.0) deformation.motion.topRows<3>().leftCols(n) = x - start.x;
   deformation.frames.resize(body.batches.size());
   for (std::size_t k = 0; k < body.batches.size(); ++k)
     tet_kernels().frames(body.batches[k], deformation.x.data(), deformation.frames[k]);
@@ -251,12 +261,16 @@ void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& 
   const double factor = mass_factor(body, start.rate);
   residual.sum.resize(3, n);
   double largest = 0.0;  // squared
+  const bool lumped = body.mass.nonZeros() == n;
+  const auto change = [&](Eigen::Index a) -> Vec3 {
+    return factor * (x.col(a) - start.x.col(a)) - start.rate * start.v.col(a);  // (v - v_0)/h + ..
+  };
   for (int b = 0; b < n; ++b) {
     Vec3 inertia = Vec3::Zero();
-    for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at && start.rate > 0.0; ++at) {
-      const Eigen::Index a = at.row();
-      inertia +=
-          at.value() * (factor * (x.col(a) - start.x.col(a)) - start.rate * start.v.col(a));  // M (v - v_0)/h + ..
+    if (start.rate > 0.0 && lumped) {
+      inertia = body.masses[b] * change(b);
+    } else if (start.rate > 0.0) {
+      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at) inertia += at.value() * change(at.row());
     }
     const Vec3 weight = body.masses[b] * gravity, elastic = residual.elastic.col(b).head<3>(),
                viscous = residual.viscous.col(b).head<3>();

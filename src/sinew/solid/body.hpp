@@ -42,6 +42,11 @@ struct Body {
   std::vector<int> others;        ///< all other cells
 
   int nodes() const { return static_cast<int>(rest.cols()); }
+  /// No coordinate of the node is held.
+  bool free(Eigen::Index node) const {
+    const int* own = &unknown(0, node);
+    return (own[0] | own[1] | own[2]) >= 0;
+  }
   int elements() const { return static_cast<int>(cells.size()); }
   int points() const { return static_cast<int>(volumes.size()); }
   ElementRest element(int cell) const;

@@ -108,6 +108,20 @@ unsigned bits(const Truth& truth, int first) {
   return set;
 }
 
+template <int width>
+using Some [[gnu::vector_size(8 * width), gnu::may_alias]] = long long;
+
+/// All lanes are true: half with half.
+template <int width>
+bool all_true(const Some<width>& v) {
+  if constexpr (width == 1) {
+    return v[0] != 0;
+  } else {
+    const auto* halves = reinterpret_cast<const Some<width / 2>*>(&v);
+    return all_true<width / 2>(halves[0] & halves[1]);
+  }
+}
+
 /// The rotation of the polar decomposition, by Newton's iteration for R^T R = 1 without scaling; false where it has not
 /// converged or would end at a mirror.
 Matrix rotation(const Matrix& F, Truth& found) {
@@ -120,9 +134,7 @@ Matrix rotation(const Matrix& F, Truth& found) {
     const Matrix step = next - X;
     const Truth small = dot(step, step) < 1e-16;  // the error left is about the step's square
     X = next;
-    bool all = true;
-    for (int k = 0; k < kWidth; ++k) all &= small[k] != 0 || found[k] == 0;
-    if (all) break;
+    if (all_true<kWidth>(small | (found == 0))) break;
     if (i + 1 == kMost) found &= small;
   }
   return X;
@@ -313,11 +325,16 @@ Symmetric inverse(const Symmetric& A) {
 /// Columns of blocks come as one number of eight elements after the other, and go as three numbers of one element.
 void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers) {
   for (int k = 0; k < 10; ++k) {
-    for (int column = 0; column < 3; ++column) {
-      const Eight* rows = stiffness.block[k] + 3 * column;
-      for (int first = 0; first < kBatch; first += 4) {
+    for (int first = 0; first < kBatch; first += 4) {
+      double* to[4];
+#pragma GCC unroll 4
+      for (int i = 0; i < 4; ++i) to[i] = numbers + places.block[k][first + i];
+#pragma GCC unroll 3
+      for (int column = 0; column < 3; ++column) {
+        const Eight* rows = stiffness.block[k] + 3 * column;
         const FourVectors own = turned(four(rows[0] + first), four(rows[1] + first), four(rows[2] + first));
-        for (int i = 0; i < 4; ++i) add_four(numbers + 4 * column + places.block[k][first + i], own.of[i]);
+#pragma GCC unroll 4
+        for (int i = 0; i < 4; ++i) add_four(to[i] + 4 * column, own.of[i]);
       }
     }
   }

@@ -13,7 +13,7 @@ using linalg::Matrix6X;
 using linalg::Vec6;
 
 /// A solution is good enough with such a residual, and refined while it is larger than the first.
-constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
+constexpr double kAimed = 8e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
 /// A compliance smaller than this part of the largest one counts as none.
 constexpr double kVanished = 1e-10;
 
@@ -77,12 +77,18 @@ class Half {
   /// Its rows and columns that are runs of both, below the diagonal of M.
   void subtract(const linalg::Run& rows, const linalg::Run& columns, const Eigen::MatrixXd& M) {
     const bool same = rows.row == columns.row;
-    const bool apart = rows.into >= columns.into + columns.length || columns.into >= rows.into + rows.length;
-    if (same || (apart && rows.into > columns.into)) {
+    if (same || rows.into >= columns.into + columns.length) {
       for (int b = 0; b < columns.length; ++b) {
-        double* const to = factor_.column(columns.into + b) + rows.into;
-        const double* const from = &M(rows.row, columns.row + b);
-        for (int a = same ? b : 0; a < rows.length; ++a) to[a] -= from[a];
+        const int from = same ? b : 0, count = rows.length - from;
+        Eigen::VectorXd::Map(factor_.column(columns.into + b) + rows.into + from, count) -=
+            Eigen::VectorXd::Map(&M(rows.row + from, columns.row + b), count);
+      }
+      return;
+    }
+    if (columns.into >= rows.into + rows.length) {
+      for (int a = 0; a < rows.length; ++a) {
+        double* const to = factor_.column(rows.into + a) + columns.into;
+        for (int b = 0; b < columns.length; ++b) to[b] -= M(rows.row + a, columns.row + b);
       }
       return;
     }
@@ -115,20 +121,15 @@ void fill_bare(const CoupledProblem& problem, Border& border) {
 
 auto base_of(const ChainPart& part, Eigen::VectorXd& y) { return y.segment(part.first_base, part.base.cols()); }
 
-/// Sum of y_i g_i over attachments.
-Vec6 total_wrench(const ChainPart& part, const Eigen::VectorXd& y) {
-  Vec6 sum = Vec6::Zero();
-  for (std::size_t i = 0; i < part.at.size(); ++i) sum += y[part.at[i]] * part.attachments[i].g;
-  return sum;
-}
-
-/// pull = R^T y of all attachments, single ones and those along the whole chain; `own` is room.
-void pull_of(const ChainPart& part, const Eigen::VectorXd& y, Eigen::VectorXd& own, Eigen::VectorXd& pull) {
+/// pull = R^T y of all attachments, single ones and those along the whole chain; `own` is room. Returns the wrench that
+/// the base feels of the former.
+Vec6 pull_of(const ChainPart& part, const Eigen::VectorXd& y, Eigen::VectorXd& own, Eigen::VectorXd& pull) {
   own.resize(static_cast<Eigen::Index>(part.at.size()));
   for (std::size_t i = 0; i < part.at.size(); ++i) own[static_cast<Eigen::Index>(i)] = y[part.at[i]];
-  linalg::across(part.chain, part.attachments, own, pull);
+  const Vec6 wrench = linalg::across(part.chain, part.attachments, own, pull);
   for (std::size_t f = 0; f < part.whole_at.size(); ++f)
     pull += y[part.whole_at[f]] * part.whole.col(static_cast<Eigen::Index>(f));
+  return wrench;
 }
 
 /// Visits the unknowns of the border that a chain ties to each other.
@@ -368,8 +369,8 @@ void CoupledFactor::fill(Border& border) {
       Eigen::VectorXd x = part.whole.col(column), left = x, seen, seen_left;
       factor.solve(x, Vec6::Zero(), &base);
       factor.solve_transposed(left, &base_left);
-      linalg::along(part.chain, part.attachments, x, seen);
-      linalg::along(part.chain, part.attachments, left, seen_left);
+      linalg::along(part.chain, part.attachments, x, Vec6::Zero(), seen);
+      linalg::along(part.chain, part.attachments, left, Vec6::Zero(), seen_left);
       const int at = part.whole_at[f];
       for (std::size_t i = 0; i < part.at.size(); ++i) {
         border.add(part.at[i], at, -seen[static_cast<Eigen::Index>(i)]);
@@ -403,11 +404,15 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
     }
     Vec6 base;
     Eigen::VectorXd& x = solution.dq[n];
+    if (right.chains[n].isZero(0.0)) {  // as answers to motors of bases are
+      x.setZero(right.chains[n].size());
+      continue;
+    }
     x = -right.chains[n];
     factors_[n].solve(x, Vec6::Zero(), &base);
     base_of(part, y).noalias() -= part.base.transpose().lazyProduct(base);
     Eigen::VectorXd& seen = rooms_[n].attached;
-    linalg::along(part.chain, part.attachments, x, seen);
+    linalg::along(part.chain, part.attachments, x, Vec6::Zero(), seen);
     for (std::size_t i = 0; i < part.at.size(); ++i) y[part.at[i]] -= seen[static_cast<Eigen::Index>(i)];
     for (std::size_t f = 0; f < part.whole_at.size(); ++f)
       y[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
@@ -484,19 +489,17 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
     const Eigen::VectorXd& x = solution.dq[n];
     Vec6 twist, wrench;
     twist.noalias() = part.base.lazyProduct(base_of(part, y_));
-    wrench.noalias() = part.chain.V.lazyProduct(x);
-    wrench += total_wrench(part, y_);
-    base_of(part, left).noalias() -= part.base.transpose().lazyProduct(wrench);
     auto& [attached, answer] = rooms_[n];
-    linalg::along(part.chain, part.attachments, x, attached);
-    for (std::size_t i = 0; i < part.at.size(); ++i)
-      left[part.at[i]] -= attached[static_cast<Eigen::Index>(i)] + part.attachments[i].g.dot(twist);
+    linalg::along(part.chain, part.attachments, x, twist, attached);
+    for (std::size_t i = 0; i < part.at.size(); ++i) left[part.at[i]] -= attached[static_cast<Eigen::Index>(i)];
     for (std::size_t f = 0; f < part.whole_at.size(); ++f)
       left[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
     Eigen::VectorXd& own = rest.chains[n];  // stands with the sign of r
-    pull_of(part, y_, attached, own);
+    const Vec6 pulled = pull_of(part, y_, attached, own);
     // (Inertia of a base that is moved and of strains may cancel to nothing.)
-    const double parts = linalg::multiply(part.chain, x, twist, answer);
+    const double parts = linalg::multiply(part.chain, x, twist, answer, wrench);
+    wrench += pulled;
+    base_of(part, left).noalias() -= part.base.transpose().lazyProduct(wrench);
     const double size = std::max({largest(right.chains[n]), largest(own), parts});
     own += right.chains[n] + answer;
     if (size > 0.0) relative = std::max(relative, largest(own) / size);
@@ -509,25 +512,42 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
   return left.allFinite() ? relative : INFINITY;
 }
 
-void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {
+/// Until the equations hold, or do not get better; tells whether they do.
+void CoupledFactor::refine(const RightSide& right, CoupledSolution& solution) {
   constexpr int kRefinements = 4;
+  solution.residual = residual(right, solution, rest_);
+  for (int i = 0; i < kRefinements && solution.residual > kAimed && std::isfinite(solution.residual); ++i) {
+    if (kind_ == Kind::singular) break;
+    solve_once(rest_, correction_);
+    correction_ += solution;
+    const double relative = residual(right, correction_, rest_);
+    if (!(relative < solution.residual)) break;
+    std::swap(solution, correction_);
+    solution.residual = relative;
+  }
+  solution.redundant = kind_ == Kind::singular;
+  const double limit = kind_ == Kind::symmetric ? kSymmetric : kind_ == Kind::general ? kTolerance : kSingular;
+  solution.ok = solution.residual < limit;
+}
+
+void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution) {
+  if (kind_ != Kind::symmetric) return solve(right, solution);
+  solve_once(right, solution);
+  solution.redundant = false;
+  solution.ok = solution.dz.allFinite() && solution.dlambda.allFinite();
+}
+
+void CoupledFactor::polish(const RightSide& right, CoupledSolution& solution) {
+  refine(right, solution);
+  if (!solution.ok) solve(right, solution);
+}
+
+void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {
   solution.ok = false;
   for (;;) {
     if (kind_ == Kind::symmetric || K_.allFinite()) {
       solve_once(right, solution);
-      solution.residual = residual(right, solution, rest_);
-      for (int i = 0; i < kRefinements && solution.residual > kAimed && std::isfinite(solution.residual); ++i) {
-        if (kind_ == Kind::singular) break;
-        solve_once(rest_, correction_);
-        correction_ += solution;
-        const double relative = residual(right, correction_, rest_);
-        if (!(relative < solution.residual)) break;
-        std::swap(solution, correction_);
-        solution.residual = relative;
-      }
-      solution.redundant = kind_ == Kind::singular;
-      const double limit = kind_ == Kind::symmetric ? kSymmetric : kind_ == Kind::general ? kTolerance : kSingular;
-      solution.ok = solution.residual < limit;
+      refine(right, solution);
       if (solution.ok) return;
     }
     const bool last = joined_ || problem_->chains.empty();

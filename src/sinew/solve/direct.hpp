@@ -105,6 +105,11 @@ class CoupledFactor {
   /// And the border.
   void factor();
   void solve(const RightSide& right, CoupledSolution& solution);
+  /// The same where what is left of the equations need not be looked at: of several solutions that are put together,
+  /// and then polished as one.
+  void answer(const RightSide& right, CoupledSolution& solution);
+  /// Refines a solution that is near: as good as one by `solve`, and otherwise solved again.
+  void polish(const RightSide& right, CoupledSolution& solution);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
   /// no more of them than rows. Costs an eigenvalue problem of the border where that has no symmetric factor.
@@ -120,6 +125,7 @@ class CoupledFactor {
   void fill(Border& border);
   void weigh();
   void solve_once(const RightSide& right, CoupledSolution& solution);
+  void refine(const RightSide& right, CoupledSolution& solution);
   /// Right side minus matrix times solution, and its largest entry beside the right side's and the solution's, as the
   /// border weighs them.
   double residual(const RightSide& right, const CoupledSolution& solution, RightSide& rest);
