@@ -153,10 +153,21 @@ TEST_P(EveryBasis, sliding_abscissae_have_their_exact_derivatives) {
     };
     const Eigen::MatrixXd D =
         difference([&](const Eigen::VectorXd& x) { return Eigen::VectorXd::Constant(1, along(x, s)); }, q, 1e-6);
-    Eigen::VectorXd coupling(rod.coordinates());
-    coupling << at(q).base.transpose() * all.slides[0].attachment.g, dense(all.chain, all.slides[0].attachment);
+    const auto coupling_of = [&](const Slide& slide) {
+      Eigen::VectorXd coupling(rod.coordinates());
+      coupling << at(q).base.transpose() * slide.attachment.g, dense(all.chain, slide.attachment);
+      return coupling;
+    };
+    const Eigen::VectorXd coupling = coupling_of(all.slides[0]);
     largest = std::max(largest, coupling.norm());
     EXPECT_LT((coupling - D.transpose()).norm(), 5e-9) << s;
+    const bool turns = !rod.sections[0].stretches() && at(q).strains[0].cols() == 1;
+    const std::optional<Slide> direct = slide_at(at(q), curve_point(at(q), s), f);
+    ASSERT_EQ(direct.has_value(), turns);
+    if (direct) {
+      EXPECT_LT((coupling_of(*direct) - coupling).norm(), 1e-13 * (1.0 + coupling.norm())) << s;
+      EXPECT_NEAR(direct->second, all.slides[0].second, 1e-13 * (1.0 + std::abs(direct->second))) << s;
+    }
     if (s == 0.3) continue;  // a section's edge: one-sided
     const double e = 1e-6;
     EXPECT_NEAR(all.slides[0].second, (along(q, s + e) - along(q, s - e)) / (2 * e), 2e-8) << s;

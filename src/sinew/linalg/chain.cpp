@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/linalg/chain_kernels.hpp"
 
@@ -92,8 +93,7 @@ void along(const Chain& chain, const std::vector<Attachment>& attachments, const
       constexpr int M = decltype(size)::value;
       const Vector<M> own = x.segment<M>(at, m);
       for (; next < attachments.size() && attachments[next].link == k; ++next)
-        y[static_cast<Eigen::Index>(next)] =
-            attachments[next].g.dot(twist) + attachments[next].b.head<M>(m).dot(own);
+        y[static_cast<Eigen::Index>(next)] = attachments[next].g.dot(twist) + attachments[next].b.head<M>(m).dot(own);
       twist.noalias() += chain.T.middleCols<M>(at, m) * own;
     });
   }
@@ -120,6 +120,52 @@ Vec6 across(const Chain& chain, const std::vector<Attachment>& attachments, cons
 }
 
 namespace {
+
+/// The inverse of a positive definite matrix, which needs no search for pivots; false where it is none.
+template <int M>
+bool invert_positive(const Square<M>& S, Square<M>& inverse) {
+  if constexpr (M == Eigen::Dynamic) {
+    return false;
+  } else {
+    double A[M][M], L[M][M], by[M];  // A: columns; L: the inverse of the unit triangle
+#pragma GCC unroll 6
+    for (int j = 0; j < M; ++j) {
+#pragma GCC unroll 6
+      for (int i = j; i < M; ++i) A[j][i] = S(i, j);
+    }
+#pragma GCC unroll 6
+    for (int j = 0; j < M; ++j) {
+      if (!(A[j][j] > 0.0)) return false;
+      by[j] = 1.0 / A[j][j];
+#pragma GCC unroll 6
+      for (int c = 0; c < j; ++c) L[j][c] = -(A[c][j] * by[c]);
+#pragma GCC unroll 6
+      for (int k = 1; k < j; ++k) {
+#pragma GCC unroll 6
+        for (int c = 0; c < k; ++c) L[j][c] -= A[k][j] * by[k] * L[k][c];
+      }
+#pragma GCC unroll 6
+      for (int k = j + 1; k < M; ++k) {
+        const double factor = A[j][k] * by[j];
+#pragma GCC unroll 6
+        for (int i = k; i < M; ++i) A[k][i] -= A[j][i] * factor;
+      }
+    }
+    bool finite = true;
+#pragma GCC unroll 6
+    for (int a = 0; a < M; ++a) {
+#pragma GCC unroll 6
+      for (int b = 0; b <= a; ++b) {
+        double sum = (a == b ? 1.0 : L[a][b]) * by[a];
+#pragma GCC unroll 6
+        for (int k = a + 1; k < M; ++k) sum += L[k][a] * L[k][b] * by[k];
+        inverse(a, b) = inverse(b, a) = sum;
+        finite &= std::abs(sum) <= std::numeric_limits<double>::max();
+      }
+    }
+    return finite;
+  }
+}
 
 /// The inverse of a symmetric matrix and the number of its negative eigenvalues, by elimination with pivots on the
 /// diagonal, the largest first; false where those do not suffice, as never happens if it is positive definite.
@@ -155,6 +201,7 @@ int negative_eigenvalues(const Eigen::MatrixXd& S) {
 /// The inverse of a pivot and how many of its eigenvalues are negative (if symmetric); false if singular.
 template <int M>
 bool invert(const Square<M>& S, bool symmetric, Square<M>& inverse, int& negative) {
+  if (symmetric && invert_positive<M>(S, inverse)) return true;
   if (!S.allFinite()) return false;
   if (symmetric) {
     int found = 0;
@@ -252,8 +299,8 @@ void ChainFactor::solve(Eigen::VectorXd& x, const Vec6& tau, Vec6* base) const {
 
 namespace {
 
-/// Copies the triangle below the diagonal of `from` to above that of `to` (which may be the same), block by block so
-/// that both stay in the cache.
+/// Copies the triangle below the diagonal of `from` to above that of `to`, block by block so that both stay in the
+/// cache.
 void mirror(const Eigen::MatrixXd& from, Eigen::MatrixXd& to) {
   constexpr Eigen::Index kBlock = 16;
   const Eigen::Index n = from.cols();
@@ -346,7 +393,6 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Con
 void ChainFactor::condense(const std::vector<Attachment>& attachments, Condensed& condensed) const {
   if (chain_->symmetric()) {
     condense_upper(attachments, condensed, condensed.W, condensed.arriving);
-    mirror(condensed.W, condensed.W);
     condensed.answering = condensed.arriving;
     return;
   }

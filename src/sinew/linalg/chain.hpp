@@ -88,7 +88,7 @@ class ChainFactor {
 
   /// What attachments sorted by link see of each other and of the base through the chain.
   struct Condensed {
-    Eigen::MatrixXd W;   ///< R A^-1 R^T
+    Eigen::MatrixXd W;   ///< R A^-1 R^T; of a symmetric one only the lower triangle counts
     Matrix6X arriving;   ///< 6 x count: g_i - V A^-1 R_i^T, the wrench that the base feels
     Matrix6X answering;  ///< 6 x count: g_i - U A^-T R_i^T, what an attachment feels of a twist of the base
 

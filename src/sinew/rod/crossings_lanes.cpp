@@ -217,7 +217,7 @@ void cross(const Exponential& to, const Loads& beyond, CrossedLanes& crossed, in
     const Lanes z = dot(f, f);
     const Exponential to(sections, length, f, z, Stumpff(z), first);
     const LoadLanes& own = crossing.beyond;
-    const Loads beyond = {part(own.moment, first), part(own.force, first), part(own.bending_moment, first),
+    const Loads beyond = {part(own.moment, first),        part(own.force, first),  part(own.bending_moment, first),
                           part(own.bending_force, first), part(own.second, first), part(own.lever, first),
                           load(own.weight + first)};
     cross(to, beyond, crossed, first);

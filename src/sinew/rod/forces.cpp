@@ -118,7 +118,7 @@ class Walk {
   bool stretches_ = false;  ///< the section's coordinates do
   Beyond beyond_;
   std::size_t left_, stations_left_;  ///< loads and stations not yet met
-  Branch branch_;     ///< to the loads at hand
+  Branch branch_;                     ///< to the loads at hand
   Together together_;
 };
 
@@ -192,19 +192,23 @@ void Walk::meet_station(int i, int k) {
 /// Those at one abscissa together, but each slide by itself.
 template <int M>
 void Walk::meet_loads(int i, int k) {
-  const double s = loads_[left_ - 1].s;
-  const bool slides = loads_[left_ - 1].slide >= 0;
-  branch_in(shape_, i, k, s, branch_);
+  const PointLoad& last = loads_[left_ - 1];
+  const double s = last.s;
+  const bool slides = last.slide >= 0, known = last.at.has_value();
+  if (!known) branch_in(shape_, i, k, s, branch_);
+  const Mat3& R = known ? last.at->R : branch_.R;
+  const Vec3& p = known ? last.at->position : branch_.p;
   Beyond here;
   bool jump = false;
   do {
     const PointLoad& load = loads_[--left_];
-    here.add(branch_.p + branch_.R * load.offset - shape_.origin, load);
+    here.add(p + R * load.offset - shape_.origin, load);
     jump |= !load.spread;
   } while (left_ > 0 && loads_[left_ - 1].s == s && !slides && loads_[left_ - 1].slide < 0);
-  const Weights& weights = branch_.weights.value;
-  if (slides || !together_.cross(i, weights(0, 0), here)) {
-    const Crossing<M> crossing = cross<M>(branch_.pieces, i, here, weights, slides ? &branch_.weights : nullptr);
+  if (slides || !together_.cross(i, s - rod_.sections[i].begin, here)) {
+    if (known) branch_in(shape_, i, k, s, branch_);
+    const Crossing<M> crossing =
+        cross<M>(branch_.pieces, i, here, branch_.weights.value, slides ? &branch_.weights : nullptr);
     add(i, k, crossing);
     if (slides) {
       Slide& slide = equations_.slides[static_cast<std::size_t>(loads_[left_].slide)];
@@ -214,9 +218,9 @@ void Walk::meet_loads(int i, int k) {
       slide.second = crossing.second;
     }
   }
-  if (jump) balance(s, branch_.R, branch_.p);
+  if (jump) balance(s, R, p);
   beyond_.add(here);
-  if (jump) balance(s, branch_.R, branch_.p);
+  if (jump) balance(s, R, p);
 }
 
 /// With `slide` the abscissa is one more coordinate, through the weights' derivatives.
@@ -330,6 +334,17 @@ void add_loads(const Configuration& shape, std::span<const PointLoad> loads, Equ
 void add_loads(const Configuration& shape, std::span<const PointLoad> loads, const Inertia& inertia,
                Equations& equations) {
   Walk(shape, loads, inertia, equations).run();
+}
+
+std::optional<Slide> slide_at(const Configuration& shape, const CurvePoint& point, const Vec3& force) {
+  if (shape.strains[point.section].cols() > 1 || shape.rod->sections[point.section].stretches()) return {};
+  Slide slide;
+  const Vec3 turning = point.derivative.cross(force);
+  slide.attachment.link = point.section;
+  slide.attachment.g << turning, Vec3::Zero();
+  slide.attachment.b = point.twists.topRows<3>().transpose() * turning;
+  slide.second = force.dot(point.second);
+  return slide;
 }
 
 void station_inertia(const Rod& rod, const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, double rate,

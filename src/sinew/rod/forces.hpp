@@ -2,6 +2,7 @@
 // tip to the base. What lies beyond a section acts on it only through six forces and how they change with a twist.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "sinew/rod/kinematics.hpp"
@@ -20,7 +21,8 @@ struct PointLoad {
   bool bends = true;    ///< false: the force has no part in the tangent (a predictor's)
   bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
   int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
-  const Mat3* stiffness = nullptr;  ///< [N/m] world axes, symmetric, beside the weight
+  const Mat3* stiffness = nullptr;     ///< [N/m] world axes, symmetric, beside the weight
+  std::optional<CentrePoint> at = {};  ///< the centreline at s, where it is known already
 };
 
 /// The mass points of a station in a time step, all at once. With o = (1, y, z) of its offset, Q = [p, R e_y, R e_z] of
@@ -49,6 +51,10 @@ struct Slide {
   double second = 0.0;
 };
 
+/// The slide of a point whose section has a constant strain and only turns; nothing of any other, which add_loads then
+/// makes. As gamma_s is carried by the cross-section, f . gamma_qs is what the turns of the point do to gamma_s x f.
+std::optional<Slide> slide_at(const Configuration& shape, const CurvePoint& point, const Vec3& force);
+
 /// Moment [N m] and force [N], in the axes of the cross-section at s, that the loads farther from the base need for
 /// balance: on the base's side of s, and on the tip's. They differ by a concentrated load at s.
 struct Balance {
@@ -63,7 +69,7 @@ struct Equations {
   Eigen::MatrixXd base;  ///< tangent of the base's coordinates among themselves; with the strains: T_b^T V, U^T T_b
   std::vector<Slide> slides;
   std::vector<Balance> internal;  ///< from base to tip, at the sections' ends and every concentrated load
-  double acting = 0.0;  ///< [N] inertia of all stations, their weight apart: in free fall the two cancel
+  double acting = 0.0;            ///< [N] inertia of all stations, their weight apart: in free fall the two cancel
 };
 
 /// All zeros. Follower forces and moments make the tangent unsymmetric.

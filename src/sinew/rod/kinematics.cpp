@@ -158,7 +158,32 @@ Vec3 second_derivative(const Section& section, const Coefficients& strains, doub
 
 }  // namespace
 
+namespace {
+
+/// In a section of constant strain: one exponential.
+CurvePoint curve_point_in(const Configuration& shape, int i, double s) {
+  const Section& section = shape.rod->sections[i];
+  const Coefficients& strains = shape.strains[i];
+  const double length = s - section.begin;
+  const Piece piece(shape.R[i], shape.p[i], length * strains.col(0));
+  const Mat6 twists = piece_twists(piece, shape.origin);
+  CurvePoint point;
+  point.section = i;
+  point.position = piece.end();
+  point.R = piece.end_frame();
+  point.derivative = point.R * strains.col(0).tail<3>();
+  point.second = second_derivative(section, strains, s, point.R);
+  point.twists.resize(6, static_cast<Eigen::Index>(section.modes.size()));
+  for (Eigen::Index c = 0; c < point.twists.cols(); ++c)
+    point.twists.col(c) = length * twists.col(section.modes[static_cast<std::size_t>(c)].strain);
+  return point;
+}
+
+}  // namespace
+
 CurvePoint curve_point(const Configuration& shape, double s) {
+  const int number = shape.rod->section_at(s);
+  if (shape.strains[number].cols() == 1) return curve_point_in(shape, number, s);
   const Branch own = branch(shape, s);
   const Section& section = shape.rod->sections[own.section];
   const Coefficients& strains = shape.strains[own.section];

@@ -12,7 +12,8 @@ Together::Together(const Configuration& shape, const Inertia& inertia, Equations
       inertia_(inertia),
       equations_(equations),
       turns_(equations.chain.symmetric() && rod_.count() > 0 &&
-             std::none_of(rod_.sections.begin(), rod_.sections.end(), [](const Section& s) { return s.stretches(); })) {}
+             std::none_of(rod_.sections.begin(), rod_.sections.end(), [](const Section& s) { return s.stretches(); })) {
+}
 
 bool Together::possible(int first, int end) const {
   for (int i = first; i < end; ++i) {

@@ -35,11 +35,13 @@ void add_points(RodRows& rod) {
     Reduced& reduced = rod.reduced();
     reduced.scale = std::max(reduced.scale, lambda.norm());
     if (point.unknown < 0) {
-      rod.load({s, Vec3::Zero(), lambda});
+      rod::PointLoad load{s, Vec3::Zero(), lambda};
+      load.at = on_curve;
+      rod.load(load);
       reduced.violation = std::max(reduced.violation, gap.norm());
       continue;
     }
-    rod.slide(s, lambda, point.unknown);
+    rod.slide(on_curve, s, lambda, point.unknown);
     reduced.violation = std::max(reduced.violation, constraint::violation(on_curve, P));
     problem.G.add(point.row, point.unknown, on_curve.derivative);
     problem.r[point.unknown] = lambda.dot(on_curve.derivative) - iterate.points[k].friction;

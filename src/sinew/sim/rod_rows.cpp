@@ -34,11 +34,22 @@ RodRows::RodRows(const StepContext& context, const State& iterate, int number, R
   own_.slides.clear();
 }
 
-void RodRows::slide(double s, const Vec3& force, int unknown) {
+void RodRows::slide(const rod::CurvePoint& point, double s, const Vec3& force, int unknown) {
   rod::PointLoad load{s, Vec3::Zero(), force};
-  load.slide = static_cast<int>(own_.slides.size());
+  load.at = point;
+  if (const std::optional<rod::Slide> own = rod::slide_at(own_.shape, point, force)) {
+    add_slide(*own, unknown);
+  } else {
+    load.slide = static_cast<int>(own_.slides.size());
+    own_.slides.push_back(unknown);
+  }
   own_.loads.push_back(load);
-  own_.slides.push_back(unknown);
+}
+
+void RodRows::add_slide(const rod::Slide& slide, int unknown) {
+  problem().B.add(unknown, unknown, slide.second);
+  own_.attachments.push_back(slide.attachment);
+  own_.border.push_back(unknown);
 }
 
 void RodRows::attach(int border, const rod::CurvePoint& point, const Vec3& offset, const Vec3& f) {
@@ -139,11 +150,7 @@ void RodRows::finish() {
   for (const rod::Station& station : rod.stations) weight += station.spread(0, 0) * context_.gravity.norm();
   reduced_.scale = std::max(reduced_.scale, equations.acting + weight);
   rod::add_elasticity(rod, iterate_.rods[number_].q, start.q, context_.rate, equations);
-  for (std::size_t i = 0; i < own_.slides.size(); ++i) {
-    problem().B.add(own_.slides[i], own_.slides[i], equations.slides[i].second);
-    own_.attachments.push_back(equations.slides[i].attachment);
-    own_.border.push_back(own_.slides[i]);
-  }
+  for (std::size_t i = 0; i < own_.slides.size(); ++i) add_slide(equations.slides[i], own_.slides[i]);
 
   part.base = own_.shape.base;
   part.first_base = model.unknown;

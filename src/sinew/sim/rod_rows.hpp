@@ -20,7 +20,7 @@ class RodRows {
   /// A force on a material point; loads may come in any order.
   void load(const rod::PointLoad& load) { own_.loads.push_back(load); }
   /// An abscissa that is the unknown z, under the force of its load: f . gamma_qs and f . gamma_ss.
-  void slide(double s, const Vec3& force, int unknown);
+  void slide(const rod::CurvePoint& point, double s, const Vec3& force, int unknown);
   /// Couples a border entry (an unknown z, or row(i)) to the strains and the base by f . dX/dq of the point at
   /// `offset`.
   void attach(int border, const rod::CurvePoint& point, const Vec3& offset, const Vec3& f);
@@ -30,6 +30,7 @@ class RodRows {
   void finish();
 
  private:
+  void add_slide(const rod::Slide& slide, int unknown);
   void add_forces();
   void add_tendons(solve::ChainPart& part);
   void measure();

@@ -53,57 +53,38 @@ class Dense {
 /// The same of a symmetric matrix, in the order of its elimination: half of it is enough.
 class Half {
  public:
-  Half(linalg::SymmetricFactor& factor, const std::vector<int>& place, std::vector<linalg::Run>& runs)
-      : factor_(factor), place_(place), runs_(runs) {}
+  Half(linalg::SymmetricFactor& factor, const std::vector<int>& place, std::vector<int>& places)
+      : factor_(factor), place_(place), places_(places) {}
   void add(int i, int j, double value) {
     if (place_[i] >= place_[j]) factor_.column(place_[j])[place_[i]] += value;
   }
   void subtract(const std::vector<int>& at, int shift, const Eigen::MatrixXd& M, bool) {
-    runs_.clear();
-    for (int a = 0; a < static_cast<int>(at.size()); ++a) {
-      const int place = place_[shift + at[a]];
-      if (!runs_.empty() && runs_.back().into + runs_.back().length == place) {
-        ++runs_.back().length;
-      } else {
-        runs_.push_back({a, place, 1});
-      }
+    const auto n = static_cast<int>(at.size());
+    places_.resize(at.size());
+    bool consecutive = true;  // as a volume's rows are
+    for (int a = 0; a < n; ++a) {
+      places_[a] = place_[shift + at[a]];
+      consecutive &= a == 0 || places_[a] == places_[a - 1] + 1;
     }
-    for (std::size_t c = 0; c < runs_.size(); ++c) {
-      for (std::size_t r = c; r < runs_.size(); ++r) subtract(runs_[r], runs_[c], M);
+    for (int b = 0; b < n; ++b) {
+      const int own = places_[b];
+      if (consecutive) {
+        Eigen::VectorXd::Map(factor_.column(own) + own, n - b) -= M.col(b).tail(n - b);
+        continue;
+      }
+      factor_.column(own)[own] -= M(b, b);
+      for (int a = b + 1; a < n; ++a) {
+        const int other = places_[a];
+        // The same unknown twice stands on both sides of the diagonal.
+        factor_.column(std::min(own, other))[std::max(own, other)] -= (own == other ? 2.0 : 1.0) * M(a, b);
+      }
     }
   }
 
  private:
-  /// Its rows and columns that are runs of both, below the diagonal of M.
-  void subtract(const linalg::Run& rows, const linalg::Run& columns, const Eigen::MatrixXd& M) {
-    const bool same = rows.row == columns.row;
-    if (same || rows.into >= columns.into + columns.length) {
-      for (int b = 0; b < columns.length; ++b) {
-        const int from = same ? b : 0, count = rows.length - from;
-        Eigen::VectorXd::Map(factor_.column(columns.into + b) + rows.into + from, count) -=
-            Eigen::VectorXd::Map(&M(rows.row + from, columns.row + b), count);
-      }
-      return;
-    }
-    if (columns.into >= rows.into + rows.length) {
-      for (int a = 0; a < rows.length; ++a) {
-        double* const to = factor_.column(rows.into + a) + columns.into;
-        for (int b = 0; b < columns.length; ++b) to[b] -= M(rows.row + a, columns.row + b);
-      }
-      return;
-    }
-    for (int b = 0; b < columns.length; ++b) {
-      for (int a = 0; a < rows.length; ++a) {
-        const auto [first, last] = std::minmax({columns.into + b, rows.into + a});
-        // The same unknown twice stands on both sides of the diagonal.
-        factor_.column(first)[last] -= (first == last ? 2.0 : 1.0) * M(rows.row + a, columns.row + b);
-      }
-    }
-  }
-
   linalg::SymmetricFactor& factor_;
   const std::vector<int>& place_;
-  std::vector<linalg::Run>& runs_;
+  std::vector<int>& places_;
 };
 
 /// What the border is without chains.
@@ -297,7 +278,7 @@ void CoupledFactor::weigh() {
     };
     for (const auto& [row, column, value] : problem.G) meet(nz + row, column, value);
     for (const auto& [row, column, value] : problem.B) meet(row, column, value);
-    for (int i = 0; i < size; ++i) scale_[i] /= largest_[i] > 0.0 ? std::sqrt(largest_[i]) : 1.0;
+    scale_.array() /= (largest_.array() > 0.0).select(largest_.array(), 1.0).sqrt();
   }
   std::fill_n(least_.begin(), yielding_, -kVanished * most);
   for (int i = 0; i < nz; ++i) least_[place_[i]] = kVanished / (scale_[i] * scale_[i]);
@@ -308,7 +289,7 @@ bool CoupledFactor::factor_symmetric() {
   const int size = border_size(problem);
   place();
   symmetric_.start(size);
-  Half border(symmetric_, place_, runs_);
+  Half border(symmetric_, place_, places_);
   fill(border);
   weigh();
   if (!scale_.allFinite() || !symmetric_.factor(begin_, least_)) return false;
@@ -352,7 +333,7 @@ void CoupledFactor::fill(Border& border) {
     const linalg::ChainFactor& factor = factors_[n];
     const linalg::ChainFactor::Condensed& condensed = condensed_[n];
     const auto nb = static_cast<int>(part.base.cols());
-    border.subtract(part.at, 0, condensed.W, false);
+    border.subtract(part.at, 0, condensed.W, part.chain.symmetric());
     for (int i = 0; i < nb; ++i) {
       const Vec6 felt = factor.base_response().transpose() * part.base.col(i);
       const int own = part.first_base + i;

@@ -148,7 +148,7 @@ class CoupledFactor {
 
   Eigen::VectorXd scale_;  ///< D: D K D has entries near one
   Eigen::VectorXd diagonal_, largest_, y_, left_, forces_, moved_;
-  std::vector<linalg::Run> runs_;
+  std::vector<int> places_;
   struct ChainRoom {
     Eigen::VectorXd attached, answer;
   };
