@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-_NAMESPACE = re.compile(r"(inline )?namespace [\w:]* ?\{( *//.*)?$|\}  // namespace|using namespace")
+_NAMESPACE = re.compile(r"(inline )?namespace [\w:]+ ?\{$|\}  // namespace|using namespace")
+_UNNAMED = re.compile(r"^namespace \{.*?^\}  // namespace$", re.DOTALL | re.MULTILINE)
 _TYPE = re.compile(r"(?:template\s*<.*?>\s*)?(?:struct|class|enum class|enum|concept|using)\s+(?:\[\[.*?\]\]\s*)?(\w+)", re.DOTALL)
 _FUNCTION = re.compile(r"(operator\W{1,2}|~?\w+)\s*\(")
 _VALUE = re.compile(r"(\w+)(?:\[[^\]]*\])*\s*(?:=|\{|;)")
@@ -18,6 +19,7 @@ def declarations(text: str) -> Iterator[tuple[list[str], list[str]]]:
     comment: list[str] = []
     code: list[str] = []
     depth = 0
+    text = _UNNAMED.sub("", text)  # what belongs to the file that includes it
     for line in re.sub(r"^[ \t]*#(.*\\\n)*.*$", "", text, flags=re.MULTILINE).splitlines():
         bare = re.sub(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])'|//.*", "", line).rstrip()
         if depth == 0 and not code:
