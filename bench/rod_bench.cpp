@@ -23,14 +23,15 @@ using rod::Vec3;
 
 constexpr int kPoints = 100;     ///< tied to something, two rows each, and one more at the tip
 constexpr double kRate = 100.0;  ///< [1/s] steps of 10 ms
-constexpr double kLimit = 1.5;   ///< of all stages at 100 sections of three strains, in Cholesky factorisations
+const Vec3 kGravity(-9.81, 0.0, 0.0);
+constexpr double kLimit = 1.5;  ///< of all stages at 100 sections of three strains, in Cholesky factorisations
 constexpr double kAimedAt = 0.5;
 
 /// A tendon of 1 m that bends and twists, what it did before, and where it is held.
 struct Tendon {
   rod::Rod rod;
   Eigen::VectorXd q, start;
-  std::vector<Vec3> masses;  ///< where the mass points were
+  Eigen::Matrix3Xd masses;  ///< where the mass points were
   std::vector<double> points;
 
   Tendon(int sections, const std::vector<int>& strains, int order) {
@@ -50,7 +51,7 @@ struct Tendon {
     }
     start = 0.9999 * q;
     const rod::Configuration shape = configure(start);
-    for (const rod::MassPoint& mass : rod.masses) masses.push_back(rod::position(shape, mass.s, mass.offset));
+    masses = rod::mass_positions(shape);
     for (int i = 0; i < kPoints; ++i) points.push_back((i + 0.37) / kPoints);  // away from Gauss points
   }
 
@@ -58,29 +59,22 @@ struct Tendon {
   rod::Configuration configure() const { return configure(q); }
 
   /// As sim/rod_rows does: inertia of the mass points by backward Euler, their weight, and a force at each tied point.
-  std::vector<rod::PointLoad> loads(const rod::Configuration& shape) const {
-    std::vector<rod::PointLoad> loads;
+  struct Loads {
+    std::vector<rod::PointLoad> forces;
+    std::vector<rod::StationInertia> stations;
+  };
+  Loads loads(const rod::Configuration& shape) const {
+    Loads loads;
     double sign = 1.0;  // forces that nearly balance, as those of a body do
-    for (const double s : points) loads.push_back({s, Vec3::Zero(), (sign = -sign) * Vec3(0.003, -0.01, 0.005)});
-    const auto tied = static_cast<std::ptrdiff_t>(loads.size());
-    loads.reserve(loads.size() + masses.size());
-    double s = -1.0;
-    rod::Branch at;
-    for (std::size_t i = 0; i < rod.masses.size(); ++i) {
-      const rod::MassPoint& mass = rod.masses[i];
-      if (mass.s != s) at = rod::branch(shape, s = mass.s);
-      const Vec3 acceleration = (at.p + at.R * mass.offset - masses[i]) * kRate * kRate;
-      loads.push_back(
-          {mass.s, mass.offset, mass.mass * (acceleration + 9.81 * Vec3::UnitX()), mass.mass * kRate * kRate});
-    }
-    std::inplace_merge(loads.begin(), loads.begin() + tied, loads.end(),
-                       [](const auto& a, const auto& b) { return a.s < b.s; });
+    for (const double s : points) loads.forces.push_back({s, Vec3::Zero(), (sign = -sign) * Vec3(0.003, -0.01, 0.005)});
+    rod::station_inertia(rod, masses, Eigen::Matrix3Xd::Zero(3, masses.cols()), kRate, kGravity, shape.origin,
+                         loads.stations);
     return loads;
   }
 
-  rod::Equations equations(const rod::Configuration& shape, const std::vector<rod::PointLoad>& loads) const {
-    rod::Equations equations = rod::make_equations(shape, rod::conservative(loads));
-    rod::add_loads(shape, loads, equations);
+  rod::Equations equations(const rod::Configuration& shape, const Loads& loads) const {
+    rod::Equations equations = rod::make_equations(shape, rod::conservative(loads.forces));
+    rod::add_loads(shape, loads.forces, {loads.stations, kGravity}, equations);
     rod::add_elasticity(rod, q, start, kRate, equations);
     return equations;
   }
@@ -139,7 +133,7 @@ std::string name_of(const Case& own, const std::string& stage) {
 struct Ready {
   Tendon tendon;
   rod::Configuration shape;
-  std::vector<rod::PointLoad> loads;
+  Tendon::Loads loads;
   std::vector<linalg::Attachment> rows;
   rod::Equations equations;
   linalg::ChainFactor factor;

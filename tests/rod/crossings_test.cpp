@@ -20,7 +20,6 @@ std::vector<PointLoad> loads_on(const Rod& rod) {
   for (int i = 0; i < 30; ++i) {
     PointLoad load{rod.length() * i / 29.0, Vec3(0, 0.01 * (i % 3), 0.02), Vec3(0.3, -0.1 * i, 1.0)};
     load.weight = i % 2 == 0 ? 0.0 : 2.0 + i;
-    load.bends = i % 5 != 0;
     load.spread = i % 3 == 0;
     loads.push_back(load);
   }
@@ -81,6 +80,40 @@ TEST(Crossings, AreThoseMadeOneByOne) {
   }
 }
 
+/// More sections than there are lanes, and not a multiple of them; one turns too far for its group.
+TEST(Crossings, OfManySectionsAreThoseMadeOneByOne) {
+  Discretisation cut, wide;
+  for (int i = 0; i <= 19; ++i) cut.ends.push_back(0.1 * i);
+  wide.ends = cut.ends;
+  cut.modes = modes_of({0, 1, 2});
+  wide.modes = modes_of({0, 1, 2, 3});
+  const Profile profile = {{0.0, 1.9, SolidPart{Circle{0.02}, Circle{0.01}, 1e6, 0.4, 1000.0, 10.0}, 0.0}};
+  const Rod turns = make_rod(cut, profile), stretches = make_rod(wide, profile);
+  for (const int tight : {-1, 2, 12, 18}) {
+    Eigen::VectorXd q(turns.coordinates()), more = Eigen::VectorXd::Zero(stretches.coordinates());
+    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = std::sin(1.0 + 0.7 * static_cast<double>(i));
+    if (tight >= 0) q[3 * tight] = 35.0;  // 3.5 rad
+    for (int i = 0; i < turns.count(); ++i) more.segment<3>(4 * i) = q.segment<3>(3 * i);
+    const Configuration shape = configure(turns, kBase, q), other = configure(stretches, kBase, more);
+    const Start start(shape);
+    const std::vector<StationInertia> own = start.inertia(shape), apart_own = start.inertia(other);
+    Equations together = make_equations(shape, true), apart = make_equations(other, true);
+    add_loads(shape, loads_on(turns), {own, kGravity}, together);
+    add_loads(other, loads_on(stretches), {apart_own, kGravity}, apart);
+    EXPECT_NEAR(together.acting, apart.acting, 1e-13 * apart.acting);
+    for (int i = 0; i < turns.count(); ++i) {
+      EXPECT_LT((together.r.segment<3>(3 * i) - apart.r.segment<3>(4 * i)).norm(), 1e-13 * apart.r.norm()) << i;
+      EXPECT_LT((together.chain.D.block<3, 3>(0, 3 * i) - apart.chain.D.block<3, 3>(0, 4 * i)).norm(),
+                1e-13 * apart.chain.D.norm());
+      EXPECT_LT((together.chain.V.middleCols<3>(3 * i) - apart.chain.V.middleCols<3>(4 * i)).norm(),
+                1e-13 * apart.chain.V.norm());
+    }
+    ASSERT_EQ(together.internal.size(), apart.internal.size());
+    for (std::size_t i = 0; i < apart.internal.size(); ++i)
+      EXPECT_LT((together.internal[i].beyond - apart.internal[i].beyond).norm(), 1e-12 * apart.r.norm());
+  }
+}
+
 /// More sections than there are lanes, and not a multiple of them.
 TEST(Crossings, AreThoseOfOneSectionWhereSectionsAreAlike) {
   Discretisation one, many;
@@ -110,7 +143,7 @@ TEST(StationInertia, IsThatOfItsPoints) {
   const Start start(shape);
   const std::vector<StationInertia> stations = start.inertia(shape);
   for (const bool bends : {true, false}) {
-    std::vector<PointLoad> points;
+    std::vector<PointLoad> points, weights;
     for (std::size_t i = 0; i < rod.masses.size(); ++i) {
       const MassPoint& mass = rod.masses[i];
       const auto at = static_cast<Eigen::Index>(i);
@@ -118,16 +151,18 @@ TEST(StationInertia, IsThatOfItsPoints) {
       PointLoad point{mass.s, mass.offset};
       point.force = mass.mass * ((moved * kRate - start.velocities.col(at)) * kRate - kGravity);
       point.weight = mass.mass * kRate * kRate;
-      point.bends = bends;
       point.spread = true;
       points.push_back(point);
+      point.force.setZero();
+      weights.push_back(point);
     }
-    Equations one = make_equations(shape, true), other = make_equations(shape, true);
+    Equations one = make_equations(shape, true), other = one, tangent = one;
     add_loads(shape, {}, {stations, kGravity, bends}, one);
     add_loads(shape, points, other);
+    add_loads(shape, bends ? points : weights, tangent);
     EXPECT_LT((one.r - other.r).norm(), 1e-13 * other.r.norm());
-    EXPECT_LT((dense_tangent(shape, one) - dense_tangent(shape, other)).norm(),
-              1e-13 * dense_tangent(shape, other).norm());
+    EXPECT_LT((dense_tangent(shape, one) - dense_tangent(shape, tangent)).norm(),
+              1e-13 * dense_tangent(shape, tangent).norm());
     EXPECT_GT(other.r.norm(), 0.1);
   }
 }
@@ -161,8 +196,8 @@ TEST_P(EveryRodKernel, GivesTheSame) {
         for (int c = 0; c < 3; ++c) {
           for (int r = 0; r < 3; ++r) sections.R[c][r][lane] = R(r, c);
         }
-        const double size = std::hypot(sections.rotation[0][lane], sections.rotation[1][lane],
-                                       sections.rotation[2][lane]);
+        const double size =
+            std::hypot(sections.rotation[0][lane], sections.rotation[1][lane], sections.rotation[2][lane]);
         for (auto& numbers : sections.rotation) numbers[lane] *= angle / size;
       }
       CrossedLanes one = {}, other = {};

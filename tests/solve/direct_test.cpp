@@ -169,6 +169,43 @@ TEST_P(Chains, eliminated_or_written_out_give_the_same) {
   EXPECT_LT((K * y - b).norm(), 1e-11 * b.norm());
 }
 
+/// Nothing is refined in an answer, so it tells how good the factor itself is; some attachments share an unknown.
+TEST(ChainAnswers, are_solutions_and_as_good_as_solved_ones_once_they_are_polished) {
+  CoupledProblem p = chained(true);
+  for (ChainPart& part : p.chains) part.at[2] = part.at[0];
+  const Eigen::MatrixXd K = written_out(p);
+  RightSide right;
+  right_side(p, right);
+  Eigen::VectorXd b(K.rows());
+  b << -p.r, p.c, -p.chains[0].r, -p.chains[1].r;
+  const auto left = [&](const CoupledSolution& solution) {
+    Eigen::VectorXd y(K.rows());
+    y << solution.dz, solution.dlambda, solution.dq[0], solution.dq[1];
+    return (K * y - b).norm() / (b.norm() * y.norm());
+  };
+  CoupledFactor factor;
+  factor.eliminate_chains(p);
+  factor.factor();
+  CoupledSolution solution;
+  factor.answer(right, solution);
+  ASSERT_TRUE(solution.ok);
+  EXPECT_LT(left(solution), 1e-11);
+  solution.dz *= 1.001;
+  factor.polish(right, solution);
+  EXPECT_TRUE(solution.ok);
+  EXPECT_LT(solution.residual, 1e-12);
+  EXPECT_LT(left(solution), 1e-13);
+  solution.dz.setConstant(1e3);
+  factor.polish(right, solution);
+  EXPECT_TRUE(solution.ok);
+  EXPECT_LT(left(solution), 1e-13);
+  // Chains that do not push are passed over.
+  for (Eigen::VectorXd& own : right.chains) own.setZero();
+  b.tail(p.chains[0].r.size() + p.chains[1].r.size()).setZero();
+  factor.answer(right, solution);
+  EXPECT_LT(left(solution), 1e-11);
+}
+
 TEST_P(Chains, a_chain_that_only_the_rows_hold_joins_the_border) {
   CoupledProblem p = chained(GetParam());
   p.chains[1].chain.block(2).setZero();  // no pivot of its own

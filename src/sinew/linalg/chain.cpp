@@ -135,7 +135,7 @@ bool invert_positive(const Square<M>& S, Square<M>& inverse) {
     }
 #pragma GCC unroll 6
     for (int j = 0; j < M; ++j) {
-      if (!(A[j][j] > 0.0)) return false;
+      if (!(A[j][j] > 0.0 && A[j][j] <= std::numeric_limits<double>::max())) return false;
       by[j] = 1.0 / A[j][j];
 #pragma GCC unroll 6
       for (int c = 0; c < j; ++c) L[j][c] = -(A[c][j] * by[c]);

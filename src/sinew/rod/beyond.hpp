@@ -16,16 +16,12 @@ class Beyond {
     const Vec3 weighted = load.weight * x;
     weight_ += load.weight;
     lever_ += weighted;
-    if (!load.bends) {
-      outside_.head<3>() += moment;
-      outside_.tail<3>() += load.force;
-    }
     if (load.follower) {
       second_ += x * weighted.transpose();
       carried_.head<3>() += moment;
       carried_.tail<3>() += load.force;
     } else {
-      second_ += x * (load.bends ? Vec3(weighted - load.force) : weighted).transpose();
+      second_ += x * (weighted - load.force).transpose();
       moment_ += load.moment;
     }
     if (load.stiffness) {
@@ -75,7 +71,7 @@ class Beyond {
   Mat6 K() const { return sprung(assembled(Vec3(carried_.head<3>()), bending().tail<3>(), carried_.tail<3>())); }
   Mat6 U() const { return sprung(assembled(moment_, bending().tail<3>() - carried_.tail<3>(), Vec3::Zero())); }
 
-  /// Lanes hold neither springs, followers nor moments.
+  /// Lanes hold no springs, and neither followers nor moments: those have an unsymmetric tangent, and no lanes.
   bool sprung() const { return sprung_; }
   void put(int lane, LoadLanes& lanes) const {
     const Vec6 own = bending();
@@ -129,7 +125,7 @@ class Beyond {
   Vec3 lever_ = Vec3::Zero();    ///< sum w x
   Mat3 second_ = Mat3::Zero();   ///< sum x (w x - f)^T, f the forces that stay
   Vec6 carried_ = Vec6::Zero();  ///< the wrench of followers
-  Vec6 outside_ = Vec6::Zero();  ///< the wrench of loads that stay out of the tangent
+  Vec6 outside_ = Vec6::Zero();  ///< the wrench of stations that stay out of the tangent
   Vec3 moment_ = Vec3::Zero();   ///< sum of the moments that stay
   bool sprung_ = false;
   Mat6 springs_;  ///< sum of stiffnesses, by twists; only if there are any

@@ -13,7 +13,8 @@ inline constexpr int kLine = 64;  ///< [bytes] of the cache
 /// The largest angle [rad] of an exponential.
 inline constexpr double kLargestTurn = 3.0;
 
-/// Where sections begin, from the origin, and their strains. Lanes from `count` on are left alone.
+/// Where sections begin, from the origin, and their strains. Lanes from `count` on are anything, here and below, but
+/// must hold numbers.
 struct alignas(kLine) SectionLanes {
   Eight R[3][3], p[3];                ///< columns
   Eight rotation[3], translation[3];  ///< [1/m], [-]
@@ -35,11 +36,11 @@ struct alignas(kLine) CrossingLanes {
 
 /// The mass points of a station in each section (rod/forces, StationInertia).
 struct alignas(kLine) StationLanes {
-  Eight length;         ///< [m] from the section's beginning
-  Eight mass;           ///< [kg]
-  Eight weight[3][3];   ///< columns
-  Eight pull[3][3];     ///< columns
-  LoadLanes loads;      ///< what they are where the station is
+  Eight length;        ///< [m] from the section's beginning
+  Eight mass;          ///< [kg]
+  Eight weight[3][3];  ///< columns
+  Eight pull[3][3];    ///< columns
+  LoadLanes loads;     ///< what they are where the station is
 };
 
 /// Sums over crossings, by the three rates of rotation.
@@ -64,8 +65,8 @@ struct RodKernels {
   const char* name;
   /// Adds to `crossed`.
   void (*cross)(const SectionLanes& sections, const CrossingLanes& crossing, CrossedLanes& crossed);
-  /// Fills in the stations' loads and adds to `crossed`, and to `acting` [N] inertia and weight, each by itself. Without
-  /// `bends` they have no part in the tangent but for their weights.
+  /// Fills in the stations' loads and adds to `crossed`, and to `acting` [N] inertia and weight, each by itself.
+  /// Without `bends` they have no part in the tangent but for their weights.
   void (*meet)(const SectionLanes& sections, const double (&gravity)[3], bool bends, StationLanes& station,
                CrossedLanes& crossed, Eight& acting);
   /// For the first `count` lengths.

@@ -169,23 +169,15 @@ void Walk::meet_all(int i, int k, bool all) {
 template <int M>
 void Walk::meet_station(int i, int k) {
   const std::size_t number = --stations_left_;
-  if (together_.met(number, beyond_)) return;
+  if (together_.meet(number, beyond_)) return;
   const Station& station = rod_.stations[number];
-  Configuration::StationFrame frame{Mat3(), Vec3(), -1};
-  if (!shape_.stations.empty()) frame = shape_.stations[number];
-  std::span<const Piece> pieces;
-  if (frame.piece >= 0) {
-    pieces = {&shape_.station_pieces[static_cast<std::size_t>(frame.piece)],
-              static_cast<std::size_t>(station.weights.rows())};
-  } else {
-    branch_in(shape_, i, k, station.s, branch_);
-    frame = {branch_.R, branch_.p, -1};
-    pieces = branch_.pieces;
-  }
+  branch_to(shape_, station, branch_);
+  Mat3 Q;
+  Q << branch_.p - shape_.origin, branch_.R.rightCols<2>();
   Beyond here;
-  here.add(placed(shape_, frame), inertia_.stations[number], inertia_.bends);
+  here.add(Q, inertia_.stations[number], inertia_.bends);
   equations_.acting += (here.wrench().tail<3>() + station.spread(0, 0) * inertia_.gravity).norm();
-  add(i, k, cross<M>(pieces, i, here, station.weights, nullptr));
+  add(i, k, cross<M>(branch_.pieces, i, here, station.weights, nullptr));
   beyond_.add(here);
 }
 
@@ -363,12 +355,6 @@ void station_inertia(const Rod& rod, const Eigen::Matrix3Xd& positions, const Ei
       own.pull.col(2) += mass.offset.z() * b;
     }
   }
-}
-
-Mat3 placed(const Configuration& shape, const Configuration::StationFrame& station) {
-  Mat3 Q;
-  Q << station.p - shape.origin, station.R.rightCols<2>();
-  return Q;
 }
 
 void add_elasticity(const Rod& rod, const Eigen::VectorXd& q, const Eigen::VectorXd& start, double rate,

@@ -18,7 +18,6 @@ struct PointLoad {
   double weight = 0.0;         ///< [kg/s^2]
   Vec3 moment = Vec3::Zero();  ///< [N m]
   bool follower = false;
-  bool bends = true;    ///< false: the force has no part in the tangent (a predictor's)
   bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
   int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
   const Mat3* stiffness = nullptr;     ///< [N/m] world axes, symmetric, beside the weight
@@ -35,8 +34,6 @@ struct StationInertia {
 /// velocities at the start of the step; `rate` is 1 / h. In the order of the rod's stations.
 void station_inertia(const Rod& rod, const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, double rate,
                      const Vec3& gravity, const Vec3& origin, std::vector<StationInertia>& inertia);
-/// Q, from the configuration's origin.
-Mat3 placed(const Configuration& shape, const Configuration::StationFrame& station);
 
 /// Inertia of all of a rod's stations.
 struct Inertia {

@@ -87,7 +87,6 @@ void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Confi
   shape.first_step.clear();
   shape.steps.clear();
   shape.pieces.clear();
-  shape.stations.clear();
   shape.R.reserve(N + 1);
   shape.p.reserve(N + 1);
   shape.R.push_back(R);
@@ -142,6 +141,16 @@ void branch_in(const Configuration& shape, int i, int step, double s, Branch& br
   walk(branch.weights.value, strains, branch.R, branch.p, branch.pieces);
 }
 
+void branch_to(const Configuration& shape, const Station& station, Branch& branch) {
+  branch.section = station.section;
+  branch.step = shape.first_step[station.section] + station.step;
+  branch.weights.value = station.weights;
+  branch.R = shape.steps[branch.step].R;
+  branch.p = shape.steps[branch.step].p;
+  branch.pieces.clear();
+  walk(station.weights, shape.strains[station.section], branch.R, branch.p, branch.pieces);
+}
+
 namespace {
 
 /// gamma_s = R u, so gamma_ss = R (k x u + u').
@@ -156,26 +165,29 @@ Vec3 second_derivative(const Section& section, const Coefficients& strains, doub
   return R * (xi.head<3>().cross(xi.tail<3>()) + slope);
 }
 
-}  // namespace
+/// From the start of a section of constant strain: one exponential.
+Piece piece_to(const Configuration& shape, int i, double s) {
+  return {shape.R[i], shape.p[i], (s - shape.rod->sections[i].begin) * shape.strains[i].col(0)};
+}
 
-namespace {
-
-/// In a section of constant strain: one exponential.
-CurvePoint curve_point_in(const Configuration& shape, int i, double s) {
-  const Section& section = shape.rod->sections[i];
+void put_centre(const Configuration& shape, int i, double s, const Piece& piece, CentrePoint& point) {
   const Coefficients& strains = shape.strains[i];
-  const double length = s - section.begin;
-  const Piece piece(shape.R[i], shape.p[i], length * strains.col(0));
-  const Mat6 twists = piece_twists(piece, shape.origin);
-  CurvePoint point;
   point.section = i;
   point.position = piece.end();
   point.R = piece.end_frame();
   point.derivative = point.R * strains.col(0).tail<3>();
-  point.second = second_derivative(section, strains, s, point.R);
+  point.second = second_derivative(shape.rod->sections[i], strains, s, point.R);
+}
+
+CurvePoint curve_point_in(const Configuration& shape, int i, double s) {
+  const Section& section = shape.rod->sections[i];
+  const Piece piece = piece_to(shape, i, s);
+  const Mat6 twists = piece_twists(piece, shape.origin);
+  CurvePoint point;
+  put_centre(shape, i, s, piece, point);
   point.twists.resize(6, static_cast<Eigen::Index>(section.modes.size()));
   for (Eigen::Index c = 0; c < point.twists.cols(); ++c)
-    point.twists.col(c) = length * twists.col(section.modes[static_cast<std::size_t>(c)].strain);
+    point.twists.col(c) = (s - section.begin) * twists.col(section.modes[static_cast<std::size_t>(c)].strain);
   return point;
 }
 
@@ -205,17 +217,9 @@ CurvePoint curve_point(const Configuration& shape, double s) {
 
 CentrePoint centre_point(const Configuration& shape, double s) {
   const int i = shape.rod->section_at(s);
-  const Coefficients& strains = shape.strains[i];
-  if (strains.cols() > 1) return static_cast<const CentrePoint&>(curve_point(shape, s));
-  const Section& section = shape.rod->sections[i];
+  if (shape.strains[i].cols() > 1) return static_cast<const CentrePoint&>(curve_point(shape, s));
   CentrePoint point;
-  point.section = i;
-  const Vec6 W = (s - section.begin) * strains.col(0);
-  const auto [turn, tangent] = lie::RotationMap::both(W.head<3>());
-  point.R.noalias() = shape.R[i] * turn.matrix();
-  point.position = shape.p[i] + shape.R[i] * (tangent * W.tail<3>());
-  point.derivative = point.R * strains.col(0).tail<3>();
-  point.second = second_derivative(section, strains, s, point.R);
+  put_centre(shape, i, s, piece_to(shape, i, s), point);
   return point;
 }
 
@@ -230,6 +234,12 @@ Eigen::Matrix3Xd mass_positions(const Configuration& shape) {
   return positions;
 }
 
+double longest_exponential(const Coefficients& strains) {
+  return strains.cols() > 1 ? 0.0 : kLargestTurn / std::max(strains.col(0).head<3>().norm(), 1e-300);
+}
+
+namespace {
+
 Beginning beginning(const Mat3& R, const Vec3& p, const Coefficients& strains) {
   Beginning from;
   Eigen::Map<Mat3>(&from.R[0][0]) = R;
@@ -239,82 +249,48 @@ Beginning beginning(const Mat3& R, const Vec3& p, const Coefficients& strains) {
   return from;
 }
 
-double longest_exponential(const Coefficients& strains) {
-  return strains.cols() > 1 ? 0.0 : kLargestTurn / std::max(strains.col(0).head<3>().norm(), 1e-300);
-}
-
-namespace {
-
-/// Visits the frames at all stations; exponentials go into `pieces`, where they are wanted, but for those of sections
-/// that need none.
-template <class Visit>
-void each_station(const Configuration& shape, std::vector<Piece>* pieces, const Visit& visit) {
-  const std::vector<Station>& stations = shape.rod->stations;
-  const RodKernels& kernels = rod_kernels();
-  Eight length;
-  Reached reached;
-  Pieces own;
-  for (std::size_t k = 0; k < stations.size();) {
-    const Station& first = stations[k];
-    const Configuration::StepStart& start = shape.steps[shape.first_step[first.section] + first.step];
-    const Coefficients& strains = shape.strains[first.section];
-    const bool kept = pieces && shape.rod->sections[first.section].stretches();
-    const double longest = kept ? 0.0 : longest_exponential(strains);
-    int count = 0;
-    for (; count < kLanes && k + count < stations.size(); ++count) {
-      const Station& station = stations[k + count];
-      if (station.section != first.section || !(station.weights(0, 0) < longest)) break;
-      length[count] = station.weights(0, 0);
-    }
-    if (count > 0) {
-      std::fill(length + count, length + kLanes, 0.0);
-      kernels.reach(beginning(start.R, start.p, strains), length, count, reached);
-      for (int i = 0; i < count; ++i, ++k) {
-        Mat3 R;
-        Vec3 p;
-        for (int c = 0; c < 3; ++c) {
-          p[c] = reached.p[c][i];
-          for (int r = 0; r < 3; ++r) R(r, c) = reached.R[c][r][i];
-        }
-        visit(k, R, p, -1);
-      }
-      continue;
-    }
-    Mat3 R = start.R;
-    Vec3 p = start.p;
-    if (pieces) {
-      const auto piece = static_cast<int>(pieces->size());
-      walk(first.weights, strains, R, p, *pieces);
-      visit(k, R, p, piece);
-    } else {
-      own.clear();
-      walk(first.weights, strains, R, p, own);
-      visit(k, R, p, -1);
-    }
-    ++k;
-  }
-}
-
 }  // namespace
-
-void add_stations(Configuration& shape) {
-  if (!shape.stations.empty()) return;
-  shape.station_pieces.clear();
-  each_station(shape, &shape.station_pieces, [&](std::size_t, const Mat3& R, const Vec3& p, int piece) {
-    shape.stations.push_back({R, p, piece});
-  });
-}
 
 void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions) {
   const Rod& rod = *shape.rod;
   positions.resize(3, static_cast<Eigen::Index>(rod.masses.size()));
-  const auto place = [&](std::size_t k, const Mat3& R, const Vec3& p, int) {
-    const Station& station = rod.stations[k];
+  const auto place = [&](const Station& station, const Mat3& R, const Vec3& p) {
     for (int i = station.first_mass; i < station.first_mass + station.masses; ++i)
       positions.col(i) = p + R * rod.masses[static_cast<std::size_t>(i)].offset;
   };
-  if (shape.stations.empty()) return each_station(shape, nullptr, place);
-  for (std::size_t k = 0; k < rod.stations.size(); ++k) place(k, shape.stations[k].R, shape.stations[k].p, -1);
+  const RodKernels& kernels = rod_kernels();
+  Eight length;
+  Reached reached;
+  Branch own;
+  for (std::size_t k = 0; k < rod.stations.size();) {
+    const Station& first = rod.stations[k];
+    const Configuration::StepStart& start = shape.steps[shape.first_step[first.section] + first.step];
+    const Coefficients& strains = shape.strains[first.section];
+    const double longest = longest_exponential(strains);
+    int count = 0;
+    for (; count < kLanes && k + count < rod.stations.size(); ++count) {
+      const Station& station = rod.stations[k + count];
+      if (station.section != first.section || !(station.weights(0, 0) < longest)) break;
+      length[count] = station.weights(0, 0);
+    }
+    if (count == 0) {
+      branch_to(shape, first, own);
+      place(first, own.R, own.p);
+      ++k;
+      continue;
+    }
+    std::fill(length + count, length + kLanes, 0.0);
+    kernels.reach(beginning(start.R, start.p, strains), length, count, reached);
+    for (int i = 0; i < count; ++i, ++k) {
+      Mat3 R;
+      Vec3 p;
+      for (int c = 0; c < 3; ++c) {
+        p[c] = reached.p[c][i];
+        for (int r = 0; r < 3; ++r) R(r, c) = reached.R[c][r][i];
+      }
+      place(rod.stations[k], R, p);
+    }
+  }
 }
 
 Matrix6X twists_at(const Configuration& shape, double s) {

@@ -76,13 +76,6 @@ struct Configuration {
   };
   std::vector<StepStart> steps;
   std::vector<Piece> pieces;
-  struct StationFrame {
-    Mat3 R;
-    Vec3 p;
-    int piece;  ///< first of the exponentials from the start of the step; -1: not kept, as they are made together
-  };
-  std::vector<StationFrame> stations;  ///< of the mass points, once `add_stations` has been asked for them
-  std::vector<Piece> station_pieces;
   Matrix6X base;    ///< twists of the base's coordinates
   Matrix6X twists;  ///< of the strain coordinates, as felt beyond their section
 };
@@ -106,6 +99,8 @@ struct Branch {
 Branch branch(const Configuration& shape, double s);
 /// The same in a step of section i that is known already, as in Branch; `branch` is written over.
 void branch_in(const Configuration& shape, int i, int step, double s, Branch& branch);
+/// To a station, by its own weights; their derivatives are left alone.
+void branch_to(const Configuration& shape, const Station& station, Branch& branch);
 
 /// A point on the centreline.
 struct CentrePoint {
@@ -126,15 +121,11 @@ CurvePoint curve_point(const Configuration& shape, double s);
 /// Position of the material point at abscissa s, offset in the cross-section's frame.
 Vec3 position(const Configuration& shape, double s, const Vec3& offset = Vec3::Zero());
 
-/// Fills in the frames at the mass points, unless they are there.
-void add_stations(Configuration& shape);
-
-/// For exponentials of constant strains that are made together (rod/crossings), and the longest that can be [m]; 0
-/// where the strains vary.
-Beginning beginning(const Mat3& R, const Vec3& p, const Coefficients& strains);
+/// The longest exponential [m] of constant strains that can be made together with others (rod/crossings); 0 where the
+/// strains vary.
 double longest_exponential(const Coefficients& strains);
 
-/// Where the mass points are, 3 x count [m]. By the frames there, where they are filled in.
+/// Where the mass points are, 3 x count [m].
 Eigen::Matrix3Xd mass_positions(const Configuration& shape);
 void mass_positions(const Configuration& shape, Eigen::Matrix3Xd& positions);
 

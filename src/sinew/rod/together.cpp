@@ -1,6 +1,5 @@
 #include "sinew/rod/together.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +10,7 @@ Together::Together(const Configuration& shape, const Inertia& inertia, Equations
       rod_(*shape.rod),
       inertia_(inertia),
       equations_(equations),
-      turns_(equations.chain.symmetric() && rod_.count() > 0 &&
+      turns_(equations.chain.symmetric() &&
              std::none_of(rod_.sections.begin(), rod_.sections.end(), [](const Section& s) { return s.stretches(); })) {
 }
 
@@ -87,7 +86,7 @@ bool Together::cross(int i, double length, const Beyond& beyond) {
   return true;
 }
 
-bool Together::met(std::size_t station, Beyond& beyond) {
+bool Together::meet(std::size_t station, Beyond& beyond) {
   if (!on_ || station < first_station_) return false;
   const int lane = rod_.stations[station].section - first_;
   beyond.add(at_[--stations_[lane]].loads, lane);

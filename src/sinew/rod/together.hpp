@@ -14,12 +14,13 @@ class Together {
  public:
   Together(const Configuration& shape, const Inertia& inertia, Equations& equations);
 
-  /// Section i is next, and stations before `stations` are still to be met. Those of a new group meet their inertia now.
+  /// Section i is next, and stations before `stations` are still to be met. Those of a new group meet their inertia
+  /// now.
   void begin(int i, std::size_t stations);
   /// Loads beyond an exponential of section i; false where it must be crossed by itself.
   bool cross(int i, double length, const Beyond& beyond);
   /// Adds a station to what lies beyond; false where it must be met by itself.
-  bool met(std::size_t station, Beyond& beyond);
+  bool meet(std::size_t station, Beyond& beyond);
   /// Section i is done.
   void end(int i);
 
@@ -36,12 +37,12 @@ class Together {
   const Inertia& inertia_;
   Equations& equations_;
   const RodKernels& kernels_ = rod_kernels();
-  bool turns_;              ///< the rod's sections could be crossed together
-  bool on_ = false;         ///< those of the group are
-  int first_ = -1;          ///< section of the group
-  int round_ = 0;           ///< next of the section
-  int rounds_ = 0;          ///< in use
-  std::size_t first_station_ = 0;  ///< of the group
+  bool turns_;                          ///< the rod's sections could be crossed together
+  bool on_ = false;                     ///< those of the group are
+  int first_ = -1;                      ///< section of the group
+  int round_ = 0;                       ///< next of the section
+  int rounds_ = 0;                      ///< in use
+  std::size_t first_station_ = 0;       ///< of the group
   std::array<int, kLanes> stations_{};  ///< of each section that are still to be met
   SectionLanes sections_;
   CrossedLanes crossed_;

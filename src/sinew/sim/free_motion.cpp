@@ -75,7 +75,8 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
   forces.reaction.resize(model.held());
   Eigen::Index held = 0;
   for (Eigen::Index node = 0; node < r.cols(); ++node) {
-    for (int axis = 0; axis < 3 && !body.free(node); ++axis) {
+    if (body.free(node)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
       if (body.unknown(axis, node) < 0) forces.reaction[held++] = std::exchange(r(axis, node), 0.0);
     }
   }

@@ -162,7 +162,6 @@ void finish(const StepContext& context, State& next, Linearization& here) {
     RodState& own = next.rods[i];
     rod::Configuration& shape = here.shape(static_cast<int>(i));
     rod::reconfigure(model.rods[i].rod, base_of(context, next, static_cast<int>(i)), own.q, shape);
-    rod::add_stations(shape);
     rod::mass_positions(shape, own.masses);
     own.velocity = (own.masses - context.start.rods[i].masses) * context.rate;
   }

@@ -515,7 +515,9 @@ void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution) {
   if (kind_ != Kind::symmetric) return solve(right, solution);
   solve_once(right, solution);
   solution.redundant = false;
-  solution.ok = solution.dz.allFinite() && solution.dlambda.allFinite();
+  solution.residual = 0.0;
+  solution.ok = solution.dz.allFinite() && solution.dlambda.allFinite() &&
+                std::all_of(solution.dq.begin(), solution.dq.end(), [](const auto& own) { return own.allFinite(); });
 }
 
 void CoupledFactor::polish(const RightSide& right, CoupledSolution& solution) {

@@ -105,8 +105,8 @@ class CoupledFactor {
   /// And the border.
   void factor();
   void solve(const RightSide& right, CoupledSolution& solution);
-  /// The same where what is left of the equations need not be looked at: of several solutions that are put together,
-  /// and then polished as one.
+  /// One of several solutions that are put together, and then polished as one: what is left of its equations is neither
+  /// looked at, nor told in `residual`. After a `solve`, which finds out what the factor is good for.
   void answer(const RightSide& right, CoupledSolution& solution);
   /// Refines a solution that is near: as good as one by `solve`, and otherwise solved again.
   void polish(const RightSide& right, CoupledSolution& solution);
