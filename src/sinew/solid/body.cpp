@@ -270,7 +270,8 @@ void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& 
     if (start.rate > 0.0 && lumped) {
       inertia = body.masses[b] * change(b);
     } else if (start.rate > 0.0) {
-      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at) inertia += at.value() * change(at.row());
+      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)
+        inertia += at.value() * change(at.row());
     }
     const Vec3 weight = body.masses[b] * gravity, elastic = residual.elastic.col(b).head<3>(),
                viscous = residual.viscous.col(b).head<3>();

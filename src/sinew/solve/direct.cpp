@@ -107,7 +107,7 @@ auto base_of(const ChainPart& part, Eigen::VectorXd& y) { return y.segment(part.
 Vec6 pull_of(const ChainPart& part, const Eigen::VectorXd& y, Eigen::VectorXd& own, Eigen::VectorXd& pull) {
   own.resize(static_cast<Eigen::Index>(part.at.size()));
   for (std::size_t i = 0; i < part.at.size(); ++i) own[static_cast<Eigen::Index>(i)] = y[part.at[i]];
-  const Vec6 wrench = linalg::across(part.chain, part.attachments, own, pull);
+  Vec6 wrench = linalg::across(part.chain, part.attachments, own, pull);
   for (std::size_t f = 0; f < part.whole_at.size(); ++f)
     pull += y[part.whole_at[f]] * part.whole.col(static_cast<Eigen::Index>(f));
   return wrench;
