@@ -104,9 +104,8 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
   };
   for (int i = 0; i < turns; ++i) {
     StepReport report;
-    const double own = timed(state, again, factor, [&](State& at) {
-      return report = advance(model, workspace, at, {Evaluation::motion});
-    });
+    const double own = timed(state, again, factor,
+                             [&](State& at) { return report = advance(model, workspace, at, {Evaluation::motion}); });
     if (own < result.step) result.stages = report.times;
     result.step = std::min(result.step, own);
   }
@@ -137,9 +136,10 @@ Measured measure(const Scene& scene, const Vec3& tip, const MeshReader& meshes, 
   }
   const Goal goal = {output_position(inverse, start, inverse.outputs[0]) + Vec3(0, 0.1e-3, -0.1e-3)};
   for (int i = 0; i < turns; ++i)
-    result.inverse = std::min(result.inverse, timed(start, again, factor, [&](State& at) {
-                                return inverse_step(inverse, own, goal, hold, scene.time.step, at, {Evaluation::motion});
-                              }));
+    result.inverse =
+        std::min(result.inverse, timed(start, again, factor, [&](State& at) {
+                   return inverse_step(inverse, own, goal, hold, scene.time.step, at, {Evaluation::motion});
+                 }));
   return result;
 }
 

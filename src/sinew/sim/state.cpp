@@ -74,8 +74,8 @@ bool slides(const Model& model, const ContactState& contact) {
 
 namespace {
 
-/// Visits every number of a state in the order of the record (kStateLayout); sizes are the model's. A visitor that takes
-/// arrays is given these as they are.
+/// Visits every number of a state in the order of the record (kStateLayout); sizes are the model's. A visitor that
+/// takes arrays is given these as they are.
 template <class StateType, class Visit>
 void each_number(StateType& state, const Visit& visit) {
   visit(state.time);
