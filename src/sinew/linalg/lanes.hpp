@@ -42,11 +42,5 @@ inline Matrix outer(const Vector& u, const Vector& v) { return {u * v.x, u * v.y
 /// v x A, by columns.
 inline Matrix cross(const Vector& v, const Matrix& A) { return {cross(v, A.c0), cross(v, A.c1), cross(v, A.c2)}; }
 
-inline double total(const Lanes& v) {
-  double sum = v[0];
-  for (int i = 1; i < kWidth; ++i) sum += v[i];
-  return sum;
-}
-
 }  // namespace
 }  // namespace sinew::lanes
