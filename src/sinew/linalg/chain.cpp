@@ -34,8 +34,8 @@ Eigen::MatrixXd dense(const Chain& chain) {
   for (int k = 0; k < chain.links(); ++k) {
     const int at = chain.first[k], m = chain.size(k);
     A.block(at, at, m, m) = chain.block(k);
-    A.block(0, at, at, m) = chain.T.leftCols(at).transpose() * chain.wrenches(k);
-    A.block(at, 0, m, at) = chain.left_wrenches(k).transpose() * chain.T.leftCols(at);
+    A.block(0, at, at, m) = chain.T.leftCols(at).transpose() * chain.V.middleCols(at, m);
+    A.block(at, 0, m, at) = chain.left().middleCols(at, m).transpose() * chain.T.leftCols(at);
   }
   return A;
 }
@@ -46,7 +46,7 @@ double multiply(const Chain& chain, const Eigen::VectorXd& x, const Vec6& tau, E
   const auto see = [&largest](const auto& part) {
     for (Eigen::Index i = 0; i < part.size(); ++i) largest = std::max(largest, std::abs(part[i]));
   };
-  const Matrix6X& left = chain.symmetric() ? chain.V : chain.U;
+  const Matrix6X& left = chain.left();
   Vec6 twist = tau;
   for (int k = 0; k < chain.links(); ++k) {
     const int at = chain.first[k], m = chain.size(k);

@@ -34,9 +34,8 @@ struct Chain {
   bool symmetric() const { return U.cols() == 0; }
   auto block(int k) { return D.block(0, first[k], size(k), size(k)); }
   auto block(int k) const { return D.block(0, first[k], size(k), size(k)); }
-  auto twists(int k) const { return T.middleCols(first[k], size(k)); }
-  auto wrenches(int k) const { return V.middleCols(first[k], size(k)); }
-  auto left_wrenches(int k) const { return (symmetric() ? V : U).middleCols(first[k], size(k)); }
+  /// U, symmetric or not.
+  const Matrix6X& left() const { return symmetric() ? V : U; }
 };
 
 /// All zeros, for links of the given sizes.

@@ -380,7 +380,7 @@ Eigen::MatrixXd dense_tangent(const Configuration& shape, const Equations& equat
   Eigen::MatrixXd A(nb + n, nb + n);
   A.topLeftCorner(nb, nb) = equations.base;
   A.topRightCorner(nb, n) = shape.base.transpose() * chain.V;
-  A.bottomLeftCorner(n, nb) = (chain.symmetric() ? chain.V : chain.U).transpose() * shape.base;
+  A.bottomLeftCorner(n, nb) = chain.left().transpose() * shape.base;
   A.bottomRightCorner(n, n) = linalg::dense(chain);
   return A;
 }

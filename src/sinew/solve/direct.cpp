@@ -147,7 +147,7 @@ Eigen::MatrixXd written_out(const CoupledProblem& problem) {
     const linalg::Chain& chain = part.chain;
     K.block(at, at, n, n) = linalg::dense(chain);
     K.block(part.first_base, at, nb, n) = part.base.transpose() * chain.V;
-    K.block(at, part.first_base, n, nb) = (chain.symmetric() ? chain.V : chain.U).transpose() * part.base;
+    K.block(at, part.first_base, n, nb) = chain.left().transpose() * part.base;
     for (std::size_t i = 0; i < part.at.size(); ++i) {
       const Eigen::VectorXd own = linalg::dense(chain, part.attachments[i]);
       const Eigen::VectorXd base = part.base.transpose() * part.attachments[i].g;
