@@ -48,12 +48,15 @@ class EveryTetKernel : public testing::TestWithParam<const char*> {
   const TetKernels* own = nullptr;
 };
 
-/// Vectors of nodes as the kernels want them.
-Eigen::Matrix4Xd padded(const Eigen::Matrix3Xd& x) {
-  Eigen::Matrix4Xd all = Eigen::Matrix4Xd::Zero(4, x.cols() + 1);
-  all.topLeftCorner(3, x.cols()) = x;
+/// Records of nodes, and one more.
+using Records = Eigen::Matrix<double, kRecord, Eigen::Dynamic>;
+Records records(const Eigen::Matrix3Xd& first, const Eigen::Matrix3Xd& second) {
+  Records all = Records::Zero(kRecord, first.cols() + 1);
+  all.topLeftCorner(3, first.cols()) = first;
+  all.block(4, 0, 3, second.cols()) = second;
   return all;
 }
+Records no_forces(const Body& body) { return Records::Zero(kRecord, body.nodes() + 1); }
 
 TEST_P(EveryTetKernel, GivesForcesAndTangentsOfTheElements) {
   const Body body = sample_body();
@@ -62,21 +65,19 @@ TEST_P(EveryTetKernel, GivesForcesAndTangentsOfTheElements) {
     for (const double rate : {0.0, 100.0}) {
       const Eigen::Matrix3Xd x0 = deformed(body, 0.05),
                              x = x0 + size * 0.01 * Eigen::Matrix3Xd::Random(3, body.nodes());
-      const Eigen::Matrix4Xd all_x = padded(x), motion = padded(x - x0);
+      const Records nodes = records(x, x - x0);
       for (const TetBatch& batch : body.batches) {
         TetFrames frames;
         TetStiffness definite, exact;
         const unsigned all = (1U << batch.count) - 1U;
-        own->frames(batch, all_x.data(), frames);
+        Records forces = no_forces(body);
+        own->add_forces(batch, nodes.data(), rate, body.nodes(), frames, forces.data());
         EXPECT_EQ(frames.missing & all, 0U);
-        int node[4][kBatch];
-        for (int a = 0; a < 4; ++a) {
-          for (int i = 0; i < kBatch; ++i) node[a][i] = i < batch.count ? batch.node[a][i] : body.nodes();
-        }
-        Eigen::Matrix4Xd forces = padded(Eigen::Matrix3Xd::Zero(3, body.nodes())), viscous_forces = forces;
-        own->add_forces(batch, frames, motion.data(), rate, node, forces.data(), viscous_forces.data());
+        EXPECT_EQ(forces.row(3).norm(), 0.0);
+        EXPECT_EQ(forces.row(7).norm(), 0.0);
+        EXPECT_EQ(forces.bottomRows(4).norm() > 0.0, rate > 0.0 && size > 0.0);
         own->definite(batch, frames, rate, definite);
-        own->exact(batch, frames, motion.data(), rate, exact);
+        own->exact(batch, frames, nodes.data(), rate, exact);
         for (int i = 0; i < batch.count; ++i) {
           const int e = batch.cell[i];
           for (const Tangent kind : {Tangent::definite, Tangent::exact}) {
@@ -94,8 +95,7 @@ TEST_P(EveryTetKernel, GivesForcesAndTangentsOfTheElements) {
                 EXPECT_NEAR(forces(axis, batch.node[a][i]), elastic.force(axis, a),
                             1e-12 * elastic.force.norm() + 1e-13);
                 if (rate > 0.0)
-                  EXPECT_NEAR(viscous_forces(axis, batch.node[a][i]), viscous.force(axis, a),
-                              1e-11 * viscous.force.norm());
+                  EXPECT_NEAR(forces(4 + axis, batch.node[a][i]), viscous.force(axis, a), 1e-11 * viscous.force.norm());
               }
               for (int b = 0; b <= a; ++b) {
                 for (int n = 0; n < 9; ++n)
@@ -116,8 +116,11 @@ TEST_P(EveryTetKernel, LeavesOutWhatIsFlatOrInsideOut) {
   x.col(4 * 2) = (x.col(4 * 2 + 1) + x.col(4 * 2 + 2) + x.col(4 * 2 + 3)) / 3;  // flat
   x.col(4 * 5) += 3.0 * (x.col(4 * 5 + 1) - x.col(4 * 5));                      // inside out
   TetFrames frames;
-  own->frames(body.batches[0], padded(x).data(), frames);
+  Records forces = no_forces(body);
+  own->add_forces(body.batches[0], records(x, x).data(), 0.0, body.nodes(), frames, forces.data());
   EXPECT_EQ(frames.missing, 1U << 2 | 1U << 5);
+  for (const int e : {2, 5}) EXPECT_EQ(forces.middleCols<4>(4 * e).norm(), 0.0) << e;
+  EXPECT_GT(forces.middleCols<4>(4 * 3).norm(), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(TetBatch, EveryTetKernel, testing::Values("portable", "avx2", "avx512"),

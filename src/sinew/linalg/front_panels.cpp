@@ -78,39 +78,13 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
   return ok;
 }
 
-namespace {
-
-void copy_three(const double* from, float* to) {
-  std::transform(from, from + 3, to, [](double value) { return static_cast<float>(value); });
-}
-void copy_three(const double* from, double* to) { std::memcpy(to, from, 3 * sizeof(double)); }
-
-}  // namespace
-
 /// Its entries of A and of the border, where they belong.
 template <class Real>
 void FrontPanels<Real>::start_panel(const Front& front) {
   Real* const panel = panels_.data() + front.panel;
   const std::ptrdiff_t stride = front.stride;
-  std::fill_n(panel, stride * front.columns, Real(0));
-  constexpr std::uint8_t kAll = 7;
-  for (std::size_t k = front.first_block; k < front.first_block + static_cast<std::size_t>(front.block_count); ++k) {
-    const Block& block = plan_->blocks[k];
-    const double* from = values_ + kBlockSize * (k + 1);
-    Real* to = panel + block.into;
-    if (block.rows == kAll && block.columns == kAll) {
-      for (int c = 0; c < 3; ++c, from += 4, to += stride) copy_three(from, to);
-      continue;
-    }
-    for (int c = 0; c < 3; ++c, from += 4) {
-      if (!(block.columns >> c & 1)) continue;
-      Real* next = to;
-      for (int r = 0; r < 3; ++r) {
-        if (block.rows >> r & 1) *next++ = static_cast<Real>(from[r]);
-      }
-      to += stride;
-    }
-  }
+  kernels_->start(panel, front.stride, front.columns, plan_->blocks.data() + front.first_block, front.block_count,
+                  values_ + kBlockSize * (front.first_block + 1));
   for (int j = 0; j < front.columns; ++j)
     diagonal_[front.first + j] = static_cast<double>(std::abs(panel[j * (stride + 1)]));
   const auto* entry = plan_->border_entries.data() + front.first_border_entry;

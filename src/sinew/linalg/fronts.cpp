@@ -329,8 +329,8 @@ void add_places(Fronts& plan) {
   const int lanes = plan.precision == Precision::float64 ? kLanesOf<double> : kLanesOf<float>;
   for (Front& front : plan.fronts) {
     // A panel is read in whole registers from its first row below and from its first border row on, and factored from
-    // every eighth row on, whatever the lanes.
-    const int from_border = front.rows() + whole_lanes(front.borders, lanes) + lanes - kLanes;
+    // every eighth row on, whatever the lanes; where it starts, a row more is written (kernels.hpp).
+    const int from_border = front.rows() + std::max(1, whole_lanes(front.borders, lanes)) + lanes - kLanes;
     const int from_below = front.columns + whole_lanes(front.below + front.borders, lanes);
     front.stride = whole_lanes(std::max(from_border, from_below), lanes);
     if (static_cast<std::int64_t>(front.stride) * front.columns > std::numeric_limits<std::int32_t>::max())

@@ -13,14 +13,6 @@
 
 namespace sinew::linalg {
 
-/// The entries of two nodes, while a matrix is put together: four rows to a column, three columns, by slots, the
-/// coordinates of a node. Rows are those of the node that is eliminated later.
-inline constexpr int kBlockSize = 12;
-struct Block {
-  std::uint32_t into = 0;              ///< of the first entry, in the panel
-  std::uint8_t rows = 0, columns = 0;  ///< which slots are unknowns, a bit each
-};
-
 /// Unknowns that are eliminated together, and what they meet. Its panel has the rows: its own unknowns, those below
 /// (later ones that they meet), then the border rows that reach it. Its update is what the panel does to the last two.
 struct Front {

@@ -1,6 +1,8 @@
 // The dense work of a factorisation, in registers as wide as the processor has. README.md says what they compute.
 #pragma once
 
+#include <cstdint>
+
 namespace sinew::linalg {
 
 /// Registers hold up to so many numbers. Tails of columns are worked on as if there were as many rows as fill one, so
@@ -9,6 +11,14 @@ template <class Real>
 inline constexpr int kLanesOf = 64 / static_cast<int>(sizeof(Real));
 inline constexpr int kLanes = kLanesOf<double>;
 constexpr int whole_lanes(int n, int lanes = kLanes) { return (n + lanes - 1) / lanes * lanes; }
+
+/// The entries of two nodes, while a matrix is put together: four rows to a column, the last one zero, three columns,
+/// by slots, the coordinates of a node. Rows are those of the node that is eliminated later.
+inline constexpr int kBlockSize = 12;
+struct Block {
+  std::uint32_t into = 0;              ///< of the first entry, in the panel
+  std::uint8_t rows = 0, columns = 0;  ///< which slots are unknowns, a bit each
+};
 
 /// Rows of one matrix that are rows of another, one after the other in both.
 struct Run {
@@ -19,6 +29,10 @@ struct Run {
 template <class Real>
 struct KernelsOf {
   const char* name;
+
+  /// A panel that is zero from its diagonal down but for `count` blocks, by columns, each column's from the diagonal
+  /// down. Their numbers stand one after the other. A row below the last must be there to be written.
+  void (*start)(Real* panel, int stride, int columns, const Block* blocks, int count, const double* numbers);
 
   /// Factors a panel of `columns` columns, P <- L |D|^(1/2) where P = L D [its upper part]^T and L has ones on its
   /// diagonal. The squares of kLanes columns on P's diagonal are kept inverted, with the transposed inverse above the

@@ -108,7 +108,8 @@ static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
 
 /// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`; signs that differ go into a copy of
 /// the few rows of B.
-void update_rows(Real* C, int C_stride, const Product& product, int top, int height, int columns, bool fresh) {
+[[gnu::always_inline]] inline void update_rows(Real* C, int C_stride, const Product& product, int top, int height,
+                                               int columns, bool fresh) {
   int j = 0;
   Real signed_B[kDepth * kAcross];
   const auto strips = [&]<int across>() {
@@ -134,8 +135,9 @@ void update_rows(Real* C, int C_stride, const Product& product, int top, int hei
   strips.template operator()<1>();
 }
 
-/// Signs differ rarely: where an indefinite matrix changes its sign.
-void update(Real* C, int C_stride, Product product, int height, int columns, bool fresh) {
+/// From the row `first` on. Signs differ rarely: where an indefinite matrix changes its sign.
+[[gnu::always_inline]] inline void update(Real* C, int C_stride, Product product, int first, int height, int columns,
+                                          bool fresh) {
   bool mixed = false;
   for (int k = 1; product.signs && k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
   if (!mixed) {
@@ -147,7 +149,7 @@ void update(Real* C, int C_stride, Product product, int height, int columns, boo
   int k = 0;
   do {
     const Product own = product.part(k, product.depth - k < deep ? product.depth - k : deep);
-    for (int top = 0; top < height; top += high)
+    for (int top = first; top < height; top += high)
       update_rows(C, C_stride, own, top, top + high < height ? top + high : height, columns, fresh && k == 0);
     k += deep;
   } while (k < product.depth);
@@ -155,7 +157,38 @@ void update(Real* C, int C_stride, Product product, int height, int columns, boo
 
 void update(Real* C, int C_stride, const Real* A, int A_stride, int height, int columns, int depth, const Real* signs,
             bool fresh) {
-  update(C, C_stride, Product{A, A, A_stride, A_stride, depth, signs}, height, columns, fresh);
+  update(C, C_stride, Product{A, A, A_stride, A_stride, depth, signs}, 0, height, columns, fresh);
+}
+
+using FourDoubles [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+using Four [[gnu::vector_size(4 * sizeof(Real)), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
+
+// A whole block's zeros below its columns are written over by the next one.
+void start(Real* panel, int stride, int columns, const Block* blocks, int count, const double* numbers) {
+  for (int j = 0; j < columns; ++j) {
+    Real* const column = panel + static_cast<long>(j) * stride;
+    for (int i = j / kWidth * kWidth; i < stride; i += kWidth) store(column + i, Lanes{});
+  }
+  constexpr std::uint8_t kAll = 7;
+  for (int k = 0; k < count; ++k, numbers += kBlockSize) {
+    const Block& block = blocks[k];
+    Real* to = panel + block.into;
+    if (block.rows == kAll && block.columns == kAll) {
+#pragma GCC unroll 3
+      for (int c = 0; c < 3; ++c, to += stride)
+        *reinterpret_cast<Four*>(to) =
+            __builtin_convertvector(*reinterpret_cast<const FourDoubles*>(numbers + 4 * c), Four);
+      continue;
+    }
+    for (int c = 0; c < 3; ++c) {
+      if (!(block.columns >> c & 1)) continue;
+      Real* next = to;
+      for (int r = 0; r < 3; ++r) {
+        if (block.rows >> r & 1) *next++ = static_cast<Real>(numbers[4 * c + r]);
+      }
+      to += stride;
+    }
+  }
 }
 
 constexpr int kBlock = 8;  ///< columns of a panel that are factored together
@@ -292,9 +325,9 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
         before.begin = profile.begin + first / kLanes;
         before.least_begin = *before.begin;
       }
-      update(block, stride, before, height - first, count, false);
+      update(block, stride, before, 0, height - first, count, false);
     }
-    // The square on the diagonal is factored apart; all rows, its own too, are then divided by it.
+    // The square on the diagonal is factored apart; the rows below, by whole registers, are then divided by it.
     Square square;
     if (!factor_square(count, block, stride, profile.least ? profile.least + first : nullptr, square)) return false;
     for (int j = 0; j < count; ++j) {
@@ -305,7 +338,7 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
     // Runs of rows that have begun.
     const int rows = height - first;
     const auto begun = [&](int row) { return profile.begin[(first + row) / kLanes] < first + count; };
-    for (int from = 0, end; from < rows; from = end) {
+    for (int from = count < kBlock ? 0 : kBlock, end; from < rows; from = end) {
       end = rows;
       if (profile.begin) {
         end = from + kLanes;
@@ -404,7 +437,6 @@ void totals(const Lanes (&v)[4], Real* sums) {
   if constexpr (kWidth < 4) {
     for (int k = 0; k < 4; ++k) sums[k] = total(v[k]);
   } else {
-    using Four [[gnu::vector_size(4 * sizeof(Real)), gnu::aligned(sizeof(Real)), gnu::may_alias]] = Real;
     Four part[4];
     for (int k = 0; k < 4; ++k) {
       const Four* own = reinterpret_cast<const Four*>(&v[k]);
@@ -491,7 +523,7 @@ void solve_transposed(const Real* panel, int stride, int columns, Real* x) {
 
 }  // namespace
 
-const KernelsOf<Real> SINEW_KERNELS{SINEW_NAME,       factor,   factor_profile,     update, add, solve,
-                                    solve_transposed, multiply, multiply_transposed};
+const KernelsOf<Real> SINEW_KERNELS{SINEW_NAME, start, factor,           factor_profile, update,
+                                    add,        solve, solve_transposed, multiply,       multiply_transposed};
 
 }  // namespace sinew::linalg

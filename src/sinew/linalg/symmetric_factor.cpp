@@ -23,7 +23,11 @@ bool SymmetricFactor::factor(std::span<const int> begin, std::span<const double>
 
 void SymmetricFactor::solve(double* b) const {
   std::fill(b + size_, b + stride_, 0.0);
-  kernels_->solve(panel_.data(), stride_, size_, b);
+  int first = 0;  // what is zero stays so
+  while (first < size_ && b[first] == 0.0) ++first;
+  first -= first % kLanes;
+  kernels_->solve(panel_.data() + static_cast<std::ptrdiff_t>(first) * (stride_ + 1), stride_, size_ - first,
+                  b + first);
   for (int i = 0; i < size_; ++i) b[i] *= signs_[i];
   kernels_->solve_transposed(panel_.data(), stride_, size_, b);
 }

@@ -59,6 +59,12 @@ void Inverse::begin(const Model& model, const State& start, const Goal& goal, do
   start_force_.clear();
   start_position_.clear();
   const auto n = static_cast<Eigen::Index>(model.sought.size());
+  // Strains are asked for by effectors on rods and by tendons alone.
+  const bool strains = std::any_of(model.effectors.begin(), model.effectors.end(),
+                                   [&](const EffectorModel& own) { return model.outputs[own.output].rod >= 0; }) ||
+                       std::any_of(model.sought.begin(), model.sought.end(),
+                                   [&](int motor) { return model.actuators[motor].tendon.has_value(); });
+  part_ = strains ? solve::CoupledFactor::Part::all : solve::CoupledFactor::Part::without_strains;
   weights_.resize(effector_size(model));
   for (const EffectorModel& own : model.effectors) weights_.segment(own.first, own.size) = own.weights;
   preferred_.resize(n);
@@ -102,7 +108,7 @@ void Inverse::look(const StepContext& context, const State& iterate, Linearizati
     solve::CoupledSolution& response = responses_[static_cast<std::size_t>(a)];
     tell_motor(model, iterate, actuator, 1.0, unit_);
     if (polished) {
-      here.answer(unit_, response);
+      here.answer(unit_, response, part_);
     } else {
       here.couple(unit_, response);
     }

@@ -18,6 +18,8 @@ class Inverse {
   void begin(const Model& model, const State& start, const Goal& goal, double h);
   /// Adds to an increment what the best commands change.
   void steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment);
+  /// What it takes of solutions that are not yet polished.
+  solve::CoupledFactor::Part part() const { return part_; }
   /// A part of them becomes the command.
   void take(double fraction, const Model& model, Command& command) const;
   /// No increment would change a command, or what it does to the effectors, by anything to speak of.
@@ -57,6 +59,7 @@ class Inverse {
   void set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution);
 
   Goal goal_;
+  solve::CoupledFactor::Part part_ = solve::CoupledFactor::Part::all;
   double h_ = 0.0;
   std::vector<double> start_force_, start_position_;
   EffectorRows rows_;

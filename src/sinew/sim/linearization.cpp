@@ -166,6 +166,17 @@ bool Linearization::unstable() const {
 
 void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer) {
   const Clock clock(times_->solve);
+  push_all(right);
+  follow(pushes_, side_, increment, steer);
+}
+
+void Linearization::solve_roughly(Increment& increment, const Steer& steer, solve::CoupledFactor::Part part) {
+  const Clock clock(times_->solve);
+  push_all(*this);
+  follow(pushes_, side_, increment, steer, part);
+}
+
+void Linearization::push_all(const Linearization& right) {
   const Model& model = context_->model;
   const bool own = &right == this;
   pushes_.resize(right.forces_.size());
@@ -180,7 +191,6 @@ void Linearization::solve(const Linearization& right, Increment& increment, cons
       free_[i].push(model.solids[i], model, pushes_[i], side_.c);
     }
   }
-  follow(pushes_, side_, increment, steer);
 }
 
 void Linearization::push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side) {
@@ -201,9 +211,14 @@ void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::R
 }
 
 void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side,
-                           Increment& increment, const Steer& steer) {
+                           Increment& increment, const Steer& steer, std::optional<solve::CoupledFactor::Part> rough) {
   const Model& model = context_->model;
-  factor_.solve(side, increment.reduced);
+  if (rough && !ContactForces::wanted(model, contacts_)) {
+    factor_.answer(side, increment.reduced, *rough);
+  } else {
+    rough.reset();
+    factor_.solve(side, increment.reduced);
+  }
   if (ContactForces::wanted(model, contacts_) && increment.reduced.ok) {
     double spent = 0.0;
     {
@@ -218,6 +233,10 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
     increment.forces = {};
   }
   if (steer && increment.reduced.ok) steer(increment);
+  if (rough && !increment.reduced.ok) {
+    factor_.solve(side, increment.reduced);
+    if (increment.reduced.ok) steer(increment);
+  }
   increment.dx.resize(free_.size());
   if (!increment.reduced.ok) return;
   for (std::size_t i = 0; i < free_.size(); ++i)

@@ -70,6 +70,8 @@ class Linearization {
   using Steer = std::function<void(Increment& increment)>;
   void solve(Increment& increment, const Steer& steer = {}) { solve(*this, increment, steer); }
   void solve(const Linearization& right, Increment& increment, const Steer& steer = {});
+  /// For a `steer` that polishes: without contacts it is given so much of a solution that is not.
+  void solve_roughly(Increment& increment, const Steer& steer, solve::CoupledFactor::Part part);
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
@@ -82,7 +84,9 @@ class Linearization {
   /// What was last solved for, and what was `couple`d without looking at what is left of its equations; increments that
   /// are sums of both are then polished as one, for the sum of their right sides.
   const solve::RightSide& side() const { return side_; }
-  void answer(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.answer(side, solution); }
+  void answer(const solve::RightSide& side, solve::CoupledSolution& solution, solve::CoupledFactor::Part part) {
+    factor_.answer(side, solution, part);
+  }
   void polish(const solve::RightSide& side, Increment& increment) { factor_.polish(side, increment.reduced); }
 
   /// Contacts and rubbing points are part of what is solved here.
@@ -114,7 +118,8 @@ class Linearization {
   void push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side);
   /// What comes after volumes have been pushed.
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
-              const Steer& steer);
+              const Steer& steer, std::optional<solve::CoupledFactor::Part> rough = {});
+  void push_all(const Linearization& right);
   /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
   void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 

@@ -171,9 +171,16 @@ void from_unknowns(const Body& body, const Eigen::VectorXd& u, Eigen::Matrix3Xd&
 
 namespace {
 
-void scatter(const Body& body, int e, const NodeVectors& own, Eigen::Matrix4Xd& force) {
-  const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
-  for (Eigen::Index i = 0; i < own.cols(); ++i) force.col(nodes[static_cast<std::size_t>(i)]).head<3>() += own.col(i);
+using Records = Eigen::Map<Eigen::Matrix<double, kRecord, Eigen::Dynamic>>;
+Records records(linalg::AlignedVector<double>& numbers) {
+  return {numbers.data(), kRecord, static_cast<Eigen::Index>(numbers.size()) / kRecord};
+}
+/// A vector in a node's record.
+Eigen::Map<const Vec3> elastic_of(const linalg::AlignedVector<double>& forces, Eigen::Index node) {
+  return Eigen::Map<const Vec3>(forces.data() + kRecord * node);
+}
+Eigen::Map<const Vec3> viscous_of(const linalg::AlignedVector<double>& forces, Eigen::Index node) {
+  return Eigen::Map<const Vec3>(forces.data() + kRecord * node + kRecord / 2);
 }
 
 bool viscous(const Body& body, int e) {
@@ -181,40 +188,30 @@ bool viscous(const Body& body, int e) {
   return moduli.mu > 0.0 || moduli.lambda != 0.0;
 }
 
-/// The kernels' forces of a batch; those of elements without a rotation go to the node after the last.
-void add_batch(const Body& body, const TetBatch& batch, const TetFrames& frames, const Deformation& deformation,
-               double rate, Eigen::Matrix4Xd& elastic, Eigen::Matrix4Xd& viscous_forces) {
-  const auto add = [&](const int(&node)[4][kBatch]) {
-    tet_kernels().add_forces(batch, frames, deformation.motion.data(), rate, node, elastic.data(),
-                             viscous_forces.data());
-  };
-  if (frames.missing == 0) return add(batch.node);
-  int node[4][kBatch];
-  for (int a = 0; a < 4; ++a) {
-    for (int i = 0; i < kBatch; ++i) node[a][i] = frames.missing >> i & 1U ? body.nodes() : batch.node[a][i];
-  }
-  add(node);
-}
-
-/// Elastic and, where `start` moves, viscous forces of all elements.
-void add_forces(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
-                Eigen::Matrix4Xd& elastic, Eigen::Matrix4Xd& viscous_forces) {
+/// Elastic and, where `start` moves, viscous forces of the elements that no batch has evaluated; none: no numbers.
+void add_others(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
+                linalg::AlignedVector<double>& forces) {
+  forces.clear();
   ElementResponse response;
   const auto add = [&](int e) {
+    if (forces.empty()) forces.resize(static_cast<std::size_t>(kRecord * body.nodes()), 0.0);
+    const auto scatter = [&](Eigen::Index first) {
+      const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        records(forces).col(nodes[i]).segment<3>(first) += response.force.col(static_cast<Eigen::Index>(i));
+    };
     evaluate(body.of(e).law, body.element(e), body.at_nodes(e, x), Derivatives::first, Tangent::exact, response);
-    scatter(body, e, response.force, elastic);
+    scatter(0);
     if (start.rate == 0.0 || !viscous(body, e)) return;
     response.force.setZero(3, body.element(e).nodes());
     add_viscosity(body.of(e).viscosity, start.rate, body.element(e), body.at_nodes(e, start.x), body.at_nodes(e, x),
                   Derivatives::first, Tangent::exact, response);
-    scatter(body, e, response.force, viscous_forces);
+    scatter(kRecord / 2);
   };
   for (std::size_t k = 0; k < body.batches.size(); ++k) {
     const TetBatch& batch = body.batches[k];
-    const TetFrames& frames = deformation.frames[k];
-    add_batch(body, batch, frames, deformation, start.rate, elastic, viscous_forces);
     for (int i = 0; i < batch.count; ++i) {
-      if (frames.missing >> i & 1U) add(batch.cell[i]);
+      if (deformation.frames[k].missing >> i & 1U) add(batch.cell[i]);
     }
   }
   for (const int e : body.others) add(e);
@@ -223,23 +220,31 @@ void add_forces(const Body& body, const StepStart& start, const Eigen::Matrix3Xd
 }  // namespace
 
 void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Deformation& deformation) {
-  if (body.batches.empty()) return;
   const int n = body.nodes();
-  if (deformation.x.cols() != n + 1) deformation.x.setZero(4, n + 1);
-  deformation.x.topRows<3>().leftCols(n) = x;
-  if (deformation.motion.cols() != n + 1 || !(start.rate > 0.0)) deformation.motion.setZero(4, n + 1);
-  if (start.rate > 0.0) deformation.motion.topRows<3>().leftCols(n) = x - start.x;
+  const auto size = static_cast<std::size_t>(kRecord * (n + 1));
+  deformation.nodes.resize(size, 0.0);
+  deformation.forces.assign(size, 0.0);
   deformation.frames.resize(body.batches.size());
+  if (body.batches.empty()) return;
+  auto nodes = records(deformation.nodes);
+  for (int node = 0; node < n; ++node) {
+    nodes.col(node).head<3>() = x.col(node);
+    nodes.col(node).segment<3>(kRecord / 2) =
+        start.rate > 0.0 ? Vec3(x.col(node) - start.x.col(node)) : Vec3(Vec3::Zero());
+  }
   for (std::size_t k = 0; k < body.batches.size(); ++k)
-    tet_kernels().frames(body.batches[k], deformation.x.data(), deformation.frames[k]);
+    tet_kernels().add_forces(body.batches[k], deformation.nodes.data(), start.rate, n, deformation.frames[k],
+                             deformation.forces.data());
 }
 
 Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
   Deformation deformation;
   deform(body, {}, x, deformation);
-  Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, body.nodes() + 1), none;
-  add_forces(body, {}, x, deformation, force, none);
-  return force.topLeftCorner(3, body.nodes());
+  linalg::AlignedVector<double> others;
+  add_others(body, {}, x, deformation, others);
+  Eigen::Matrix3Xd force = records(deformation.forces).topLeftCorner(3, body.nodes());
+  if (!others.empty()) force += records(others).topRows<3>();
+  return force;
 }
 
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
@@ -255,9 +260,7 @@ double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
 void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
               const Vec3& gravity, Residual& residual) {
   const int n = body.nodes();
-  residual.elastic.setZero(4, n + 1);
-  residual.viscous.setZero(4, n + 1);
-  add_forces(body, start, x, deformation, residual.elastic, residual.viscous);
+  add_others(body, start, x, deformation, residual.others);
   const double factor = mass_factor(body, start.rate);
   residual.sum.resize(3, n);
   double largest = 0.0;  // squared
@@ -273,8 +276,12 @@ void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& 
       for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)
         inertia += at.value() * change(at.row());
     }
-    const Vec3 weight = body.masses[b] * gravity, elastic = residual.elastic.col(b).head<3>(),
-               viscous = residual.viscous.col(b).head<3>();
+    const Vec3 weight = body.masses[b] * gravity;
+    Vec3 elastic = elastic_of(deformation.forces, b), viscous = viscous_of(deformation.forces, b);
+    if (!residual.others.empty()) {
+      elastic += elastic_of(residual.others, b);
+      viscous += viscous_of(residual.others, b);
+    }
     residual.sum.col(b) = inertia + elastic + viscous - weight;
     largest =
         std::max({largest, inertia.squaredNorm(), elastic.squaredNorm(), viscous.squaredNorm(), weight.squaredNorm()});
@@ -301,7 +308,7 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
     if (kind == Tangent::definite) {
       kernels.definite(batch, frames, start.rate, stiffness);
     } else {
-      kernels.exact(batch, frames, deformation.motion.data(), start.rate, stiffness);
+      kernels.exact(batch, frames, deformation.nodes.data(), start.rate, stiffness);
     }
     insert_batch(batch, stiffness, frames.missing);
     for (int i = 0; i < batch.count; ++i) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "sinew/linalg/aligned.hpp"
 #include "sinew/solid/elasticity.hpp"
 #include "sinew/solid/embedding.hpp"
 #include "sinew/solid/mesh.hpp"
@@ -83,10 +84,12 @@ Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x);
 /// Elastic energy [J]; infinite where an element's law ends (turned inside out, and not made for it).
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 
-/// Where a body is, as forces and tangent both need it first.
+/// Where a body is, as forces and tangent both need it first: records of the nodes and one more (see TetKernels), and
+/// what the batches make of them.
 struct Deformation {
-  Eigen::Matrix4Xd x, motion;     ///< [m] of nodes, and since the start; a zero below, one more node: see TetKernels
-  std::vector<TetFrames> frames;  ///< of the batches
+  linalg::AlignedVector<double> nodes;   ///< [m] where they are, and how far they moved since the start
+  std::vector<TetFrames> frames;         ///< of the batches
+  linalg::AlignedVector<double> forces;  ///< [N] elastic and viscous ones of the batches
 };
 /// Memory of an earlier one is used again, here and below.
 void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Deformation& deformation);
@@ -97,7 +100,7 @@ void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
 struct Residual {
   Eigen::Matrix3Xd sum;
   double scale = 0.0;  ///< [N] largest single contribution at any node: what the residual is measured against
-  Eigen::Matrix4Xd elastic, viscous;  ///< [N] shaped like a Deformation's
+  linalg::AlignedVector<double> others;  ///< [N] forces of elements that are in no batch, as a Deformation's
 };
 void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
               const Vec3& gravity, Residual& residual);

@@ -38,19 +38,21 @@ struct TetPlaces {
   std::uint32_t block[10][kBatch];
 };
 
-/// One set of kernels (linalg/kernels). Vectors of nodes have a fourth number, a zero, each.
+/// Numbers in a node's record: two vectors, a zero behind each.
+inline constexpr int kRecord = 8;
+
+/// One set of kernels (linalg/kernels). `nodes`: records of x and x - x_0 [m].
 struct TetKernels {
   const char* name;
-  void (*frames)(const TetBatch& batch, const double* x, TetFrames& frames);
-  /// Adds to the forces of the nodes 2 mu (F - R) + lambda tr(R^T F - 1) R and its viscous counterpart, times
-  /// gradients [N]. `motion`: x - x_0 [m]; `rate` [1/s], 0: no viscous forces. `node`: the batch's, or where its
-  /// elements' forces go instead.
-  void (*add_forces)(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
-                     const int (&node)[4][kBatch], double* elastic, double* viscous);
+  /// Finds the frames, and adds to the records of the nodes' forces [N], elastic and viscous ones,
+  /// 2 mu (F - R) + lambda tr(R^T F - 1) R and its viscous counterpart, times gradients; those of missing elements go
+  /// to the node `nowhere`. `rate` [1/s], 0: no viscous forces.
+  void (*add_forces)(const TetBatch& batch, const double* nodes, double rate, int nowhere, TetFrames& frames,
+                     double* forces);
   /// The definite tangent: that of linear elasticity in the frame R, and of the viscous forces without their stress.
   /// `exact`: the derivative of the forces. Both give nothing of use for elements that are missing.
   void (*definite)(const TetBatch& batch, const TetFrames& frames, double rate, TetStiffness& stiffness);
-  void (*exact)(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+  void (*exact)(const TetBatch& batch, const TetFrames& frames, const double* nodes, double rate,
                 TetStiffness& stiffness);
   /// Adds the blocks of all eight elements.
   void (*add)(const TetStiffness& stiffness, const TetPlaces& places, double* numbers);

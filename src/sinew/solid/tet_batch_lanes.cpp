@@ -26,47 +26,117 @@ FourVectors turned(const Four& x, const Four& y, const Four& z) {
            __builtin_shufflevector(xy02, z02, 2, 3, 6, 7), __builtin_shufflevector(xy13, z13, 2, 3, 6, 7)}};
 }
 
-/// Vectors of the nodes of one register's elements.
-Vector gather(const double* x, const int* node) {
-  Vector v;
-  if constexpr (kWidth < 4) {
-    for (int i = 0; i < kWidth; ++i) {
-      const double* own = x + 4L * node[i];
-      v.x[i] = own[0];
-      v.y[i] = own[1];
-      v.z[i] = own[2];
-    }
-  } else {
-    for (int i = 0; i < kWidth; i += 4) {
-      const Four &a = four(x + 4L * node[i]), &b = four(x + 4L * node[i + 1]), &c = four(x + 4L * node[i + 2]),
-                 &d = four(x + 4L * node[i + 3]);
-      const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-      const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-      reinterpret_cast<Four*>(&v.x)[i / 4] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
-      reinterpret_cast<Four*>(&v.y)[i / 4] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
-      reinterpret_cast<Four*>(&v.z)[i / 4] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
-    }
+/// Two vectors, each followed by a zero, of a node of each element of a register: what the nodes' records hold.
+struct Two {
+  Vector first, second;
+};
+
+#if SINEW_LANES == 8
+/// Eight records turned into registers of their numbers, by way of x x' z z' and y y' 0 0 of two records each.
+template <class Load>
+Two turned(const Load& row) {
+  Lanes low[4], high[4];
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; ++k) {
+    const Lanes a = row(2 * k), b = row(2 * k + 1);
+    low[k] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    high[k] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
   }
-  return v;
+  const auto even = [](const Lanes& a, const Lanes& b) {
+    return __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13);
+  };
+  const auto odd = [](const Lanes& a, const Lanes& b) {
+    return __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15);
+  };
+  const Lanes x0 = even(low[0], low[1]), x1 = even(low[2], low[3]), z0 = odd(low[0], low[1]), z1 = odd(low[2], low[3]),
+              y0 = even(high[0], high[1]), y1 = even(high[2], high[3]);
+  return {{even(x0, x1), even(y0, y1), even(z0, z1)}, {odd(x0, x1), odd(y0, y1), odd(z0, z1)}};
 }
 
-void scatter(const Vector& v, const int* node, double* sum) {
-  if constexpr (kWidth < 4) {
-    for (int i = 0; i < kWidth; ++i) {
-      double* own = sum + 4L * node[i];
-      own[0] += v.x[i];
-      own[1] += v.y[i];
-      own[2] += v.z[i];
-    }
-  } else {
-    const auto* x = reinterpret_cast<const Four*>(&v.x);
-    const auto* y = reinterpret_cast<const Four*>(&v.y);
-    const auto* z = reinterpret_cast<const Four*>(&v.z);
-    for (int i = 0; i < kWidth; i += 4) {
-      const FourVectors own = turned(x[i / 4], y[i / 4], z[i / 4]);
-      for (int k = 0; k < 4; ++k) add_four(sum + 4L * node[i + k], own.of[k]);
+/// And back.
+template <class Take>
+void turned_back(const Two& v, const Take& take) {
+  const auto first = [](const Lanes& a, const Lanes& b) {
+    return __builtin_shufflevector(a, b, 0, 1, 8, 9, 2, 3, 10, 11);
+  };
+  const auto last = [](const Lanes& a, const Lanes& b) {
+    return __builtin_shufflevector(a, b, 4, 5, 12, 13, 6, 7, 14, 15);
+  };
+  const Lanes none = {};
+  for (int half = 0; half < 2; ++half) {
+    const auto of = [&](const Lanes& a, const Lanes& b) { return half == 0 ? first(a, b) : last(a, b); };
+    const Lanes x = of(v.first.x, v.second.x), y = of(v.first.y, v.second.y), z = of(v.first.z, v.second.z);
+    const Lanes low[2] = {first(x, z), last(x, z)}, high[2] = {first(y, none), last(y, none)};
+    for (int k = 0; k < 2; ++k) {
+      take(4 * half + 2 * k, __builtin_shufflevector(low[k], high[k], 0, 8, 2, 10, 4, 12, 6, 14));
+      take(4 * half + 2 * k + 1, __builtin_shufflevector(low[k], high[k], 1, 9, 3, 11, 5, 13, 7, 15));
     }
   }
+}
+#endif
+
+/// What the records of the nodes of one register's elements hold.
+Two gather(const double* records, const int* node) {
+#if SINEW_LANES == 8
+  return turned([&](int i) { return load(records + 8L * node[i]); });
+#else
+  Two v;
+  const auto take = [&](Vector& to, const double* from) {
+    if constexpr (kWidth < 4) {
+      for (int i = 0; i < kWidth; ++i) {
+        const double* own = from + 8L * node[i];
+        to.x[i] = own[0];
+        to.y[i] = own[1];
+        to.z[i] = own[2];
+      }
+    } else {
+      for (int i = 0; i < kWidth; i += 4) {
+        const auto at = [&](int k) -> const Four& { return four(from + 8L * node[i + k]); };
+        const Four ab02 = __builtin_shufflevector(at(0), at(1), 0, 4, 2, 6),
+                   ab13 = __builtin_shufflevector(at(0), at(1), 1, 5, 3, 7),
+                   cd02 = __builtin_shufflevector(at(2), at(3), 0, 4, 2, 6),
+                   cd13 = __builtin_shufflevector(at(2), at(3), 1, 5, 3, 7);
+        reinterpret_cast<Four*>(&to.x)[i / 4] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
+        reinterpret_cast<Four*>(&to.y)[i / 4] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
+        reinterpret_cast<Four*>(&to.z)[i / 4] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
+      }
+    }
+  };
+  take(v.first, records);
+  take(v.second, records + 4);
+  return v;
+#endif
+}
+
+/// Adds to them.
+void scatter(const Two& v, const int* node, double* records) {
+#if SINEW_LANES == 8
+  turned_back(v, [&](int i, const Lanes& own) {
+    double* const to = records + 8L * node[i];
+    store(to, load(to) + own);
+  });
+#else
+  const auto add = [&](const Vector& own, double* to) {
+    if constexpr (kWidth < 4) {
+      for (int i = 0; i < kWidth; ++i) {
+        double* sum = to + 8L * node[i];
+        sum[0] += own.x[i];
+        sum[1] += own.y[i];
+        sum[2] += own.z[i];
+      }
+    } else {
+      const auto* x = reinterpret_cast<const Four*>(&own.x);
+      const auto* y = reinterpret_cast<const Four*>(&own.y);
+      const auto* z = reinterpret_cast<const Four*>(&own.z);
+      for (int i = 0; i < kWidth; i += 4) {
+        const FourVectors four = turned(x[i / 4], y[i / 4], z[i / 4]);
+        for (int k = 0; k < 4; ++k) add_four(to + 8L * node[i + k], four.of[k]);
+      }
+    }
+  };
+  add(v.first, records);
+  add(v.second, records + 4);
+#endif
 }
 
 /// Some elements of a batch: those of one register.
@@ -88,12 +158,21 @@ struct Part {
     put(A.c2, to[2]);
   }
   Vector gradient(int a) const { return (*this)(batch.gradient[a]); }
-  /// sum_a v_a g_a^T of vectors of the nodes; the fourth gradient is minus the sum of the others.
-  Matrix gradient_of(const double* v) const {
-    const auto at = [&](int a) { return gather(v, batch.node[a] + first); };
-    const Vector last = at(3), e0 = at(0) - last, e1 = at(1) - last, e2 = at(2) - last;
-    const Vector g0 = gradient(0), g1 = gradient(1), g2 = gradient(2);
-    return {e0 * g0.x + e1 * g1.x + e2 * g2.x, e0 * g0.y + e1 * g1.y + e2 * g2.y, e0 * g0.z + e1 * g1.z + e2 * g2.z};
+  /// sum_a v_a g_a^T of both vectors in the nodes' records; the fourth gradient is minus the sum of the others.
+  struct TwoGradients {
+    Matrix first, second;
+  };
+  TwoGradients gradients_of(const double* records) const {
+    const auto at = [&](int a) { return gather(records, batch.node[a] + first); };
+    const Two last = at(3);
+    TwoGradients sum = {};
+    for (int a = 0; a < 3; ++a) {
+      const Two own = at(a);
+      const Vector g = gradient(a);
+      sum.first = sum.first + outer(own.first - last.first, g);
+      sum.second = sum.second + outer(own.second - last.second, g);
+    }
+    return sum;
   }
 };
 
@@ -140,17 +219,6 @@ Matrix rotation(const Matrix& F, Truth& found) {
   return X;
 }
 
-[[gnu::flatten]] void frames(const TetBatch& batch, const double* x, TetFrames& frames) {
-  frames.missing = 0;
-  each_part(batch, [&](const Part& part) {
-    const Matrix F = part.gradient_of(x);
-    Truth found;
-    part.put(rotation(F, found), frames.R);
-    part.put(F, frames.F);
-    frames.missing |= bits(found == 0, part.first);
-  });
-}
-
 /// A symmetric matrix.
 struct Symmetric {
   Lanes xx, yy, zz, xy, yz, zx;
@@ -161,8 +229,8 @@ Vector operator*(const Symmetric& A, const Vector& v) {
 }
 
 /// rate C (E - E_0) of the viscosity C, with E - E_0 = sym((F_0 + dF / 2)^T dF): small motions keep their digits.
-Symmetric viscous_stress(const Part& part, const Matrix& F, const double* motion, double rate) {
-  const Matrix dF = part.gradient_of(motion), middle = F - dF * (Lanes{} + 0.5);
+Symmetric viscous_stress(const Part& part, const Matrix& F, const Matrix& dF, double rate) {
+  const Matrix middle = F - dF * (Lanes{} + 0.5);
   const Lanes xx = dot(middle.c0, dF.c0), yy = dot(middle.c1, dF.c1), zz = dot(middle.c2, dF.c2);
   const Lanes mu = rate * part(part.batch.viscous_mu), trace = rate * part(part.batch.viscous_lambda) * (xx + yy + zz);
   return {2.0 * mu * xx + trace,
@@ -173,25 +241,42 @@ Symmetric viscous_stress(const Part& part, const Matrix& F, const double* motion
           mu * (dot(middle.c2, dF.c0) + dot(middle.c0, dF.c2))};
 }
 
-[[gnu::flatten]] void add_forces(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
-                                 const int (&node)[4][kBatch], double* elastic, double* viscous) {
+[[gnu::flatten]] void add_forces(const TetBatch& batch, const double* nodes, double rate, int nowhere,
+                                 TetFrames& frames, double* forces) {
+  frames.missing = 0;
   each_part(batch, [&](const Part& part) {
-    // A matrix times the gradients of the four nodes.
-    const auto add_stress = [&](const Matrix& P, double* sum) {
-      Vector last = {};
-      for (int a = 0; a < 3; ++a) {
-        const Vector f = P * part.gradient(a);
-        scatter(f, node[a] + part.first, sum);
-        last = last - f;
+    const auto [F, dF] = part.gradients_of(nodes);
+    Truth found;
+    const Matrix R = rotation(F, found);
+    part.put(R, frames.R);
+    part.put(F, frames.F);
+    const unsigned missing = bits(found == 0, part.first);
+    frames.missing |= missing;
+    int other[4][kWidth];
+    if (missing != 0) {
+      for (int a = 0; a < 4; ++a) {
+        for (int i = 0; i < kWidth; ++i)
+          other[a][i] = missing >> (part.first + i) & 1U ? nowhere : batch.node[a][part.first + i];
       }
-      scatter(last, node[3] + part.first, sum);
-    };
-    const Matrix F = part(frames.F), R = part(frames.R);
+    }
     const Lanes pressure = part(batch.lambda) * (dot(R, F) - 3.0);
-    add_stress((F - R) * (2.0 * part(batch.mu)) + R * pressure, elastic);
-    if (rate == 0.0) return;
-    const Symmetric S = viscous_stress(part, F, motion, rate);
-    add_stress({F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}}, viscous);
+    const Matrix elastic = (F - R) * (2.0 * part(batch.mu)) + R * pressure;
+    Matrix viscous = {};
+    if (rate > 0.0) {
+      const Symmetric S = viscous_stress(part, F, dF, rate);
+      viscous = {F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}};
+    }
+    Two last = {};
+    const auto add = [&](int a, const Two& own) {
+      scatter(own, missing != 0 ? other[a] : batch.node[a] + part.first, forces);
+    };
+    for (int a = 0; a < 3; ++a) {
+      const Vector g = part.gradient(a);
+      const Two own = {elastic * g, viscous * g};
+      add(a, own);
+      last = {last.first - own.first, last.second - own.second};
+    }
+    add(3, last);
   });
 }
 
@@ -288,7 +373,7 @@ Symmetric inverse(const Symmetric& A) {
 // With T = F R^T and w the turning of R for motions u_a of the nodes, (tr T - T) w = sum_a (R g_a) x u_a, the second
 // variation of the energy is 2 mu |dF|^2 + lambda (R . dF)^2 + (lambda tr(R^T F - 1) - 2 mu) w . (tr T - T) w.
 // (Where a rotation was found T is positive definite, and so is tr T - T, whose eigenvalues are sums of two of T's.)
-[[gnu::flatten]] void exact(const TetBatch& batch, const TetFrames& frames, const double* motion, double rate,
+[[gnu::flatten]] void exact(const TetBatch& batch, const TetFrames& frames, const double* nodes, double rate,
                             TetStiffness& stiffness) {
   each_part(batch, [&](const Part& part) {
     const Matrix F = part(frames.F), R = part(frames.R);
@@ -308,7 +393,7 @@ Symmetric inverse(const Symmetric& A) {
     }
     const Projected viscous = viscosity(part, F, g, rate);
     const Symmetric common = square(F, viscous.mu, mu);
-    const Symmetric S = rate > 0.0 ? viscous_stress(part, F, motion, rate) : Symmetric{};
+    const Symmetric S = rate > 0.0 ? viscous_stress(part, F, part.gradients_of(nodes).second, rate) : Symmetric{};
     put_blocks(part, stiffness, [&](int a, int b) {
       const Vector& ta = t.of[a];
       Matrix K = common * dot(g.of[a], g.of[b]) + outer(ta * lambda, t.of[b]) + viscous(a, b) +
@@ -342,6 +427,6 @@ void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers
 
 }  // namespace
 
-const TetKernels SINEW_KERNELS{SINEW_NAME, frames, add_forces, definite, exact, add};
+const TetKernels SINEW_KERNELS{SINEW_NAME, add_forces, definite, exact, add};
 
 }  // namespace sinew::solid

@@ -367,7 +367,7 @@ void CoupledFactor::fill(Border& border) {
   }
 }
 
-void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution) {
+void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution, Part wanted) {
   const CoupledProblem& problem = *problem_;
   const Eigen::Index nz = unknowns_of(problem), border = border_size(problem);
   Eigen::VectorXd& y = y_;
@@ -378,15 +378,16 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
   Eigen::Index at = border;
   for (std::size_t n = 0; n < problem.chains.size(); ++n) {
     const ChainPart& part = problem.chains[n];
+    Eigen::VectorXd& x = solution.dq[n];
+    x.resize(right.chains[n].size());
     if (joined_) {
       y.segment(at, part.r.size()) = -right.chains[n];
       at += part.r.size();
       continue;
     }
     Vec6 base;
-    Eigen::VectorXd& x = solution.dq[n];
     if (right.chains[n].isZero(0.0)) {  // as answers to motors of bases are
-      x.setZero(right.chains[n].size());
+      x.setZero();
       continue;
     }
     x = -right.chains[n];
@@ -417,19 +418,30 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
   }
   solution.dz = y.head(nz);
   solution.dlambda = y.segment(nz, border - nz);
-  at = border;
-  for (std::size_t n = 0; n < problem.chains.size(); ++n) {
-    const ChainPart& part = problem.chains[n];
-    Eigen::VectorXd& x = solution.dq[n];
-    if (joined_) {
-      x = y.segment(at, part.r.size());
-      at += part.r.size();
-      continue;
+  if (joined_) {
+    at = border;
+    for (Eigen::VectorXd& x : solution.dq) {
+      x = y.segment(at, x.size());
+      at += x.size();
     }
-    pull_of(part, y, rooms_[n].attached, x);
+  } else if (wanted == Part::all) {
+    find_strains(right, solution);
+  } else {
+    for (Eigen::VectorXd& x : solution.dq) x.setZero();
+  }
+}
+
+/// They follow from all else.
+void CoupledFactor::find_strains(const RightSide& right, CoupledSolution& solution) {
+  y_.resize(border_size(*problem_));
+  y_ << solution.dz, solution.dlambda;
+  for (std::size_t n = 0; n < problem_->chains.size(); ++n) {
+    const ChainPart& part = problem_->chains[n];
+    Eigen::VectorXd& x = solution.dq[n];
+    pull_of(part, y_, rooms_[n].attached, x);
     x = -right.chains[n] - x;
     Vec6 twist;
-    twist.noalias() = part.base.lazyProduct(base_of(part, y));
+    twist.noalias() = part.base.lazyProduct(base_of(part, y_));
     factors_[n].solve(x, twist);
   }
 }
@@ -511,9 +523,9 @@ void CoupledFactor::refine(const RightSide& right, CoupledSolution& solution) {
   solution.ok = solution.residual < limit;
 }
 
-void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution) {
+void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution, Part part) {
   if (kind_ != Kind::symmetric) return solve(right, solution);
-  solve_once(right, solution);
+  solve_once(right, solution, part);
   solution.redundant = false;
   solution.residual = 0.0;
   solution.ok = solution.dz.allFinite() && solution.dlambda.allFinite() &&
@@ -521,8 +533,11 @@ void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution) {
 }
 
 void CoupledFactor::polish(const RightSide& right, CoupledSolution& solution) {
+  if (!joined_) find_strains(right, solution);
   refine(right, solution);
-  if (!solution.ok) solve(right, solution);
+  if (solution.ok) return;
+  if (kind_ != Kind::symmetric) return solve(right, solution);
+  factor_general(false);
 }
 
 void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {

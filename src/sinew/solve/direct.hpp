@@ -106,9 +106,11 @@ class CoupledFactor {
   void factor();
   void solve(const RightSide& right, CoupledSolution& solution);
   /// One of several solutions that are put together, and then polished as one: what is left of its equations is neither
-  /// looked at, nor told in `residual`. After a `solve`, which finds out what the factor is good for.
-  void answer(const RightSide& right, CoupledSolution& solution);
-  /// Refines a solution that is near: as good as one by `solve`, and otherwise solved again.
+  /// looked at, nor told in `residual`. Without the strains these are zero.
+  enum class Part { all, without_strains };
+  void answer(const RightSide& right, CoupledSolution& solution, Part part = Part::all);
+  /// Finds the strains of a solution that is near, and refines it: as good as one by `solve`. Where it is not `ok`, the
+  /// factor was not good enough for the parts either: they are to be answered again, by another one.
   void polish(const RightSide& right, CoupledSolution& solution);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
@@ -124,7 +126,8 @@ class CoupledFactor {
   template <class Border>
   void fill(Border& border);
   void weigh();
-  void solve_once(const RightSide& right, CoupledSolution& solution);
+  void solve_once(const RightSide& right, CoupledSolution& solution, Part part = Part::all);
+  void find_strains(const RightSide& right, CoupledSolution& solution);
   void refine(const RightSide& right, CoupledSolution& solution);
   /// Right side minus matrix times solution, and its largest entry beside the right side's and the solution's, as the
   /// border weighs them.
