@@ -26,8 +26,7 @@ constexpr int kAcross = SINEW_LANES;
 struct Product {
   const Real *A, *B;  ///< A (S B^T): rows of A as C's, rows of B as C's columns
   int A_stride, B_stride, depth;
-  const Real* signs;           ///< S; null: those of B are in it already
-  Real sign = Real(1);         ///< of all, where they are alike
+  const Real* signs;           ///< S; null: all positive, or in B already
   const int* begin = nullptr;  ///< of each kLanes rows of A the first column that is not zero; null: all from 0
   int least_begin = 0;         ///< and of the rows of B
   int before = 0;              ///< columns that were left out before the first
@@ -57,14 +56,15 @@ struct Product {
   }
 };
 
-/// C <- C - A S B^T or -A S B^T, for one tile.
-template <int down, int across>
-void tile(Real* C, int stride, const Product& product, bool fresh) {
-  Lanes sum[across][down];
+/// C <- C - A B^T or -A B^T, for one tile, of which C has the first `count` columns.
+template <int down, bool whole>
+void tile(Real* C, int stride, const Product& product, int count, bool fresh) {
+  Lanes sum[kAcross][down];
 #pragma GCC unroll 8
-  for (int j = 0; j < across; ++j) {
+  for (int j = 0; j < kAcross; ++j) {
+    const bool there = !fresh && (whole || j < count);
 #pragma GCC unroll 8
-    for (int i = 0; i < down; ++i) sum[j][i] = Lanes{};
+    for (int i = 0; i < down; ++i) sum[j][i] = there ? load(C + static_cast<long>(j) * stride + kWidth * i) : Lanes{};
   }
   const Real *A = product.A, *B = product.B;
   for (int k = 0; k < product.depth; ++k, A += product.A_stride, B += product.B_stride) {
@@ -72,30 +72,27 @@ void tile(Real* C, int stride, const Product& product, bool fresh) {
 #pragma GCC unroll 8
     for (int i = 0; i < down; ++i) a[i] = load(A + kWidth * i);
 #pragma GCC unroll 8
-    for (int j = 0; j < across; ++j) {
+    for (int j = 0; j < kAcross; ++j) {
 #pragma GCC unroll 8
       for (int i = 0; i < down; ++i) sum[j][i] -= a[i] * B[j];
     }
   }
 #pragma GCC unroll 8
-  for (int j = 0; j < across; ++j) {
-    Real* c = C + static_cast<long>(j) * stride;
+  for (int j = 0; j < kAcross; ++j) {
+    if (!whole && j >= count) break;
 #pragma GCC unroll 8
-    for (int i = 0; i < down; ++i) {
-      const Lanes own = sum[j][i] * product.sign;
-      store(c + kWidth * i, fresh ? own : load(c + kWidth * i) + own);
-    }
+    for (int i = 0; i < down; ++i) store(C + static_cast<long>(j) * stride + kWidth * i, sum[j][i]);
   }
 }
 
-/// The same for the rows `top` .. before `height`, to whole registers, of `across` columns.
-template <int across>
-void strip(Real* C, int stride, const Product& product, int top, int height, bool fresh) {
+/// The same for the rows `top` .. before `height`, to whole registers.
+template <bool whole>
+void strip(Real* C, int stride, const Product& product, int top, int height, int count, bool fresh) {
   int row = top;
   const auto tiles = [&]<int down>() {
     for (; row + kWidth * (down - 1) < height; row += kWidth * down) {
       const Product own = product.from(row, kWidth * down);
-      if (own.depth > 0 || fresh) tile<down, across>(C + row, stride, own, fresh);
+      if (own.depth > 0 || fresh) tile<down, whole>(C + row, stride, own, count, fresh);
     }
   };
   tiles.template operator()<kDown>();
@@ -106,50 +103,44 @@ void strip(Real* C, int stride, const Product& product, int top, int height, boo
 constexpr int kChunk = 240, kDepth = 256;
 static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
 
-/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`; signs that differ go into a copy of
-/// the few rows of B.
+/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`; signs go into a copy of the few rows of
+/// B. Rows of B beside the last are read, and lead nowhere.
 [[gnu::always_inline]] inline void update_rows(Real* C, int C_stride, const Product& product, int top, int height,
                                                int columns, bool fresh) {
-  int j = 0;
   Real signed_B[kDepth * kAcross];
-  const auto strips = [&]<int across>() {
-    for (; j + across <= columns && j < height; j += across) {
-      Product own = product;
-      own.B += j;
-      if (own.signs) {
-        for (int k = 0; k < own.depth; ++k) {
-          for (int i = 0; i < across; ++i)
-            signed_B[k * across + i] = own.B[static_cast<long>(k) * own.B_stride + i] * own.signs[k];
-        }
-        own.B = signed_B;
-        own.B_stride = across;
-        own.signs = nullptr;
+  for (int j = 0; j < columns && j < height; j += kAcross) {
+    Product own = product;
+    own.B += j;
+    if (own.signs) {
+      for (int k = 0; k < own.depth; ++k) {
+        for (int i = 0; i < kAcross; ++i)
+          signed_B[k * kAcross + i] = own.B[static_cast<long>(k) * own.B_stride + i] * own.signs[k];
       }
-      const int first = j / kWidth * kWidth;
-      strip<across>(C + static_cast<long>(j) * C_stride, C_stride, own, first > top ? first : top, height, fresh);
+      own.B = signed_B;
+      own.B_stride = kAcross;
+      own.signs = nullptr;
     }
-  };
-  strips.template operator()<kAcross>();
-  if constexpr (kAcross > 4) strips.template operator()<4>();
-  if constexpr (kAcross > 2) strips.template operator()<2>();
-  strips.template operator()<1>();
+    Real* const to = C + static_cast<long>(j) * C_stride;
+    const int first = j / kWidth * kWidth, from = first > top ? first : top;
+    if (j + kAcross <= columns) {
+      strip<true>(to, C_stride, own, from, height, kAcross, fresh);
+    } else {
+      strip<false>(to, C_stride, own, from, height, columns - j, fresh);
+    }
+  }
 }
 
-/// From the row `first` on. Signs differ rarely: where an indefinite matrix changes its sign.
-[[gnu::always_inline]] inline void update(Real* C, int C_stride, Product product, int first, int height, int columns,
-                                          bool fresh) {
-  bool mixed = false;
-  for (int k = 1; product.signs && k < product.depth; ++k) mixed |= product.signs[k] != product.signs[0];
-  if (!mixed) {
-    product.sign = product.signs && product.depth > 0 ? product.signs[0] : Real(1);
-    product.signs = nullptr;
-  }
+/// Signs are all positive but for indefinite matrices.
+[[gnu::always_inline]] inline void update(Real* C, int C_stride, Product product, int height, int columns, bool fresh) {
+  bool negative = false;
+  for (int k = 0; product.signs && k < product.depth; ++k) negative |= product.signs[k] < Real(0);
+  if (!negative) product.signs = nullptr;
   const bool large = !product.begin && height > 2 * kChunk;
-  const int deep = mixed || large ? kDepth : product.depth, high = large ? kChunk : height;
+  const int deep = negative || large ? kDepth : product.depth, high = large ? kChunk : height;
   int k = 0;
   do {
     const Product own = product.part(k, product.depth - k < deep ? product.depth - k : deep);
-    for (int top = first; top < height; top += high)
+    for (int top = 0; top < height; top += high)
       update_rows(C, C_stride, own, top, top + high < height ? top + high : height, columns, fresh && k == 0);
     k += deep;
   } while (k < product.depth);
@@ -157,7 +148,7 @@ static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
 
 void update(Real* C, int C_stride, const Real* A, int A_stride, int height, int columns, int depth, const Real* signs,
             bool fresh) {
-  update(C, C_stride, Product{A, A, A_stride, A_stride, depth, signs}, 0, height, columns, fresh);
+  update(C, C_stride, Product{A, A, A_stride, A_stride, depth, signs}, height, columns, fresh);
 }
 
 using FourDoubles [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
@@ -325,7 +316,7 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
         before.begin = profile.begin + first / kLanes;
         before.least_begin = *before.begin;
       }
-      update(block, stride, before, 0, height - first, count, false);
+      update(block, stride, before, height - first, count, false);
     }
     // The square on the diagonal is factored apart; the rows below, by whole registers, are then divided by it.
     Square square;
