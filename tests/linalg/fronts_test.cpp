@@ -127,6 +127,12 @@ TEST_P(EveryKernel, SolvesAndCondensesAsTheMatrixWrittenOut) {
         EXPECT_LT((compliance - W).norm(), 1e-10 * W.norm());
         factor.border_times(y, motion);
         EXPECT_LT((motion - H * x).norm(), 1e-10 * (H * x).norm());
+        Eigen::VectorXd along, moved;  // the same right side, eliminated beside the matrix
+        const HalfSolve right{b, along, &moved};
+        ASSERT_TRUE(factor.factor(threads::Crew::none(), &right));
+        EXPECT_LT((along - y).norm(), 1e-12 * y.norm());
+        EXPECT_LT((moved - H * x).norm(), 1e-10 * (H * x).norm());
+        EXPECT_LT((factor.compliance() - W).norm(), 1e-10 * W.norm());
         const Eigen::VectorXd u = Eigen::VectorXd::Random(H.rows());
         Eigen::VectorXd back(A.rows());
         y.setZero();

@@ -43,14 +43,17 @@ bool FrontPanels<Real>::factor(const AlignedVector<double>& values, const std::v
 template <class Real>
 bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* right) {
   for (Eigen::Index j = 0; j < minus_W_.cols(); ++j) minus_W_.col(j).tail(minus_W_.rows() - j).setZero();
-  while (rooms_.size() < std::min(static_cast<std::size_t>(crew.size()), plan_->parts.size()))
-    rooms_.emplace_back(plan_->part_updates + kLanesOf<Real>);
-  if (crew.size() == 1) {  // updates are added, and the right side is solved, while numbers are in the caches
-    Real* const room = rooms_.empty() ? nullptr : rooms_.front().data();
-    if (right) begin(*right);
+  while (rooms_.size() < std::min(static_cast<std::size_t>(crew.size()), plan_->parts.size())) {
+    rooms_.emplace_back();
+    rooms_.back().updates.resize(plan_->part_updates + kLanesOf<Real>);
+    rooms_.back().spare = below_;
+  }
+  if (right) begin(*right);
+  if (crew.size() == 1) {  // updates are added while they are in the caches
+    Real* const room = rooms_.empty() ? nullptr : rooms_.front().updates.data();
     for (const Front& front : plan_->fronts) {
-      if (!factor_front(front, room, crew)) return false;
-      if (right) eliminate(front, *right);
+      if (!factor_front(front, room, crew, right)) return false;
+      if (right) take_right(front, below_, *right);
     }
     if (right) end(*right);
     return true;
@@ -64,23 +67,27 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
     do {
       own = ~before & (before + 1);  // the lowest that is free
     } while (!taken.compare_exchange_weak(before, before | own));
-    Real* const room = rooms_[static_cast<std::size_t>(std::countr_zero(own))].data();
+    Room& room = rooms_[static_cast<std::size_t>(std::countr_zero(own))];
     const Fronts::Part& part = plan_->parts[static_cast<std::size_t>(i)];
     for (int s = part.first; s < part.end && ok; ++s) {
-      if (!factor_front(plan_->fronts[static_cast<std::size_t>(s)], room, threads::Crew::none())) ok = false;
+      const Front& front = plan_->fronts[static_cast<std::size_t>(s)];
+      if (!factor_front(front, room.updates.data(), threads::Crew::none(), right)) ok = false;
+      if (right && ok) take_right(front, room.spare, *right);
     }
     taken &= ~own;
   });
   for (const int s : plan_->top) {
-    if (!ok || !factor_front(plan_->fronts[static_cast<std::size_t>(s)], nullptr, crew)) return false;
+    const Front& front = plan_->fronts[static_cast<std::size_t>(s)];
+    if (!ok || !factor_front(front, nullptr, crew, right)) return false;
+    if (right) take_right(front, below_, *right);
   }
-  if (ok && right) half_solve(*right);
+  if (ok && right) end(*right);
   return ok;
 }
 
-/// Its entries of A and of the border, where they belong.
+/// Its entries of A, of the border and of the right side, where they belong.
 template <class Real>
-void FrontPanels<Real>::start_panel(const Front& front) {
+void FrontPanels<Real>::start_panel(const Front& front, const HalfSolve* right) {
   Real* const panel = panels_.data() + front.panel;
   const std::ptrdiff_t stride = front.stride;
   kernels_->start(panel, front.stride, front.columns, plan_->blocks.data() + front.first_block, front.block_count,
@@ -90,15 +97,33 @@ void FrontPanels<Real>::start_panel(const Front& front) {
   const auto* entry = plan_->border_entries.data() + front.first_border_entry;
   for (int k = 0; k < front.border_entry_count; ++k, ++entry)
     panel[entry->into] = static_cast<Real>(border_values_[entry->from]);
+  for (int j = 0; right && j < front.columns; ++j)
+    panel[front.right() + j * stride] = static_cast<Real>(right->y[front.first + j]);
+}
+
+/// What has become of a right side in a front: its row is (S y)^T, and u grows by P_h y.
+template <class Real>
+void FrontPanels<Real>::take_right(const Front& front, Vector& spare, const HalfSolve& right) {
+  const Real* const panel = panels_.data() + front.panel;
+  for (int j = 0; j < front.columns; ++j) {
+    spare[j] = signs_[front.first + j] * panel[front.right() + static_cast<std::ptrdiff_t>(j) * front.stride];
+    right.y[front.first + j] = static_cast<double>(spare[j]);
+  }
+  if (!right.u || front.borders == 0) return;
+  auto moved = spare.segment(whole_lanes(front.columns, kLanesOf<Real>), whole_lanes(front.borders, kLanesOf<Real>));
+  moved.setZero();
+  kernels_->multiply(panel + front.first_border(), front.stride, front.borders, front.columns, spare.data(),
+                     moved.data());
+  bordering_.segment(front.border, front.borders) += moved.head(front.borders);
 }
 
 template <class Real>
-bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Crew& crew) {
+bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Crew& crew, const HalfSolve* right) {
   constexpr int kColumns = 96;  // of a panel at a time
   Real* const panel = panels_.data() + front.panel;
   const int height = front.height();
   Real* signs = signs_.data() + front.first;
-  start_panel(front);
+  start_panel(front, right);
   add_children(front, room, true, crew);
   for (int first = 0; first < front.columns; first += kColumns) {
     const int count = std::min(kColumns, front.columns - first), end = first + count;
@@ -112,10 +137,10 @@ bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Cr
   }
   if (std::find(signs, signs + front.columns, Real(-1)) == signs + front.columns) signs = nullptr;
   update(crew, update_of(front, room), front.update_stride, panel + front.columns, front.stride,
-         front.below + front.borders, front.below, front.columns, signs, true);
+         front.height() - front.columns, front.below, front.columns, signs, true);
   add_children(front, room, false, crew);
   kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
-                   static_cast<int>(minus_W_.outerStride()), panel + front.rows(), front.stride, front.borders,
+                   static_cast<int>(minus_W_.outerStride()), panel + front.first_border(), front.stride, front.borders,
                    front.borders, front.columns, signs, false);
   return true;
 }
@@ -178,13 +203,13 @@ void FrontPanels<Real>::eliminate(const Front& front, const HalfSolve& right) co
   own_.head(front.columns) = y.template cast<Real>();
   kernels_->solve(panel, front.stride, front.columns, own_.data());
   y = own_.head(front.columns).template cast<double>();
-  const int height = front.below + (right.u ? front.borders : 0);
+  const int height = front.below + (right.u ? 1 + front.borders : 0);
   below_.head(whole_lanes(height, kLanesOf<Real>)).setZero();
   kernels_->multiply(panel + front.columns, front.stride, height, front.columns, own_.data(), below_.data());
   const std::span<const int> rows = plan_->rows_below(front);
   for (std::size_t i = 0; i < rows.size(); ++i)
     right.y[rows[i]] += static_cast<double>(below_[static_cast<Eigen::Index>(i)]);
-  if (right.u) bordering_.segment(front.border, front.borders) += below_.segment(front.below, front.borders);
+  if (right.u) bordering_.segment(front.border, front.borders) += below_.segment(front.below + 1, front.borders);
 }
 
 template <class Real>
@@ -202,9 +227,12 @@ void FrontPanels<Real>::back_solve(const Eigen::VectorXd& y, const Eigen::Vector
     const Real* panel = panels_.data() + front->panel;
     const std::span<const int> rows = plan_->rows_below(*front);
     for (std::size_t i = 0; i < rows.size(); ++i) below_[static_cast<Eigen::Index>(i)] = whole_[rows[i]];
-    if (u) below_.segment(front->below, front->borders) = bordering_.segment(front->border, front->borders);
+    if (u) {
+      below_[front->below] = Real(0);  // of a right side
+      below_.segment(front->below + 1, front->borders) = bordering_.segment(front->border, front->borders);
+    }
     Real* own = whole_.data() + front->first;
-    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below + (u ? front->borders : 0),
+    kernels_->multiply_transposed(panel + front->columns, front->stride, front->below + (u ? 1 + front->borders : 0),
                                   front->columns, below_.data(), own);
     kernels_->solve_transposed(panel, front->stride, front->columns, own);
   }
@@ -224,7 +252,7 @@ template <class Real>
 void FrontPanels<Real>::border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const {
   bordering_.setZero();
   for (const Front& front : plan_->fronts) {
-    const Real* border = panels_.data() + front.panel + front.rows();
+    const Real* border = panels_.data() + front.panel + front.first_border();
     own_.head(front.columns) = y.segment(front.first, front.columns).template cast<Real>();
     kernels_->multiply(border, front.stride, front.borders, front.columns, own_.data(), &bordering_[front.border]);
   }
@@ -237,7 +265,7 @@ void FrontPanels<Real>::add_border_transposed(const Eigen::VectorXd& u, Eigen::V
   for (int i = 0; i < borders(); ++i) bordering_[plan_->border[i]] = static_cast<Real>(-u[i]);
   whole_.setZero();
   for (const Front& front : plan_->fronts) {
-    const Real* border = panels_.data() + front.panel + front.rows();
+    const Real* border = panels_.data() + front.panel + front.first_border();
     kernels_->multiply_transposed(border, front.stride, front.borders, front.columns, bordering_.data() + front.border,
                                   whole_.data() + front.first);
   }

@@ -54,8 +54,9 @@ class FrontPanels {
   void begin(const HalfSolve& right) const;
   void eliminate(const Front& front, const HalfSolve& right) const;
   void end(const HalfSolve& right) const;
-  void start_panel(const Front& front);
-  bool factor_front(const Front& front, Real* room, threads::Crew& crew);
+  void start_panel(const Front& front, const HalfSolve* right);
+  bool factor_front(const Front& front, Real* room, threads::Crew& crew, const HalfSolve* right);
+  void take_right(const Front& front, Vector& spare, const HalfSolve& right);
   Real* update_of(const Front& front, Real* room) { return (front.in_part ? room : updates_.data()) + front.update; }
   void add_children(const Front& front, Real* room, bool to_panel, threads::Crew& crew);
   void update(threads::Crew& crew, Real* C, int C_stride, const Real* A, int A_stride, int height, int columns,
@@ -65,7 +66,11 @@ class FrontPanels {
   const KernelsOf<Real>* kernels_;
   const double *values_ = nullptr, *border_values_ = nullptr;  ///< while it factors
   AlignedVector<Real> panels_, updates_;
-  std::vector<AlignedVector<Real>> rooms_;  ///< of parts that are done at one time
+  struct Room {
+    AlignedVector<Real> updates;
+    Vector spare;
+  };
+  std::vector<Room> rooms_;  ///< of parts that are done at one time
   Eigen::VectorXd diagonal_;
   Vector pivots_, signs_;
   Matrix minus_W_;                                  ///< -H A^-1 H^T below its diagonal, in the order of the plan

@@ -66,7 +66,7 @@ void each_structure(const Graph& graph, const std::vector<int>& order, const std
 /// About how long a front takes, in multiplications at full speed: what is arithmetic, what moves numbers (clearing the
 /// front, adding it to its parent) and what is paid for any front. The weights are measured (README.md).
 double duration(double columns, double rows) {
-  constexpr double kNumber = 8.0, kFront = 2400.0;
+  constexpr double kNumber = 8.0, kFront = 4500.0;
   return 0.5 * columns * rows * rows + 0.5 * kNumber * rows * rows + kFront;
 }
 
@@ -196,7 +196,9 @@ void add_runs(Fronts& plan) {
       if (into < parent.columns) ++front.to_panel;
       put(i, into);
     }
-    for (int i = 0; i < front.borders; ++i) put(front.below + i, parent.rows() + front.border - parent.border + i);
+    put(front.below, parent.right());
+    for (int i = 0; i < front.borders; ++i)
+      put(front.below + 1 + i, parent.first_border() + front.border - parent.border + i);
     front.run_count = static_cast<int>(plan.runs.size() - front.first_run);
   }
 }
@@ -330,12 +332,12 @@ void add_places(Fronts& plan) {
   for (Front& front : plan.fronts) {
     // A panel is read in whole registers from its first row below and from its first border row on, and factored from
     // every eighth row on, whatever the lanes; where it starts, a row more is written (kernels.hpp).
-    const int from_border = front.rows() + std::max(1, whole_lanes(front.borders, lanes)) + lanes - kLanes;
-    const int from_below = front.columns + whole_lanes(front.below + front.borders, lanes);
+    const int from_border = front.first_border() + whole_lanes(front.borders, lanes) + lanes - kLanes;
+    const int from_below = front.columns + whole_lanes(front.height() - front.columns, lanes);
     front.stride = whole_lanes(std::max(from_border, from_below), lanes);
     if (static_cast<std::int64_t>(front.stride) * front.columns > std::numeric_limits<std::int32_t>::max())
       throw std::length_error("plan_fronts: a front of " + std::to_string(front.columns) + " unknowns");
-    front.update_stride = whole_lanes(front.below + front.borders, lanes);
+    front.update_stride = whole_lanes(front.height() - front.columns, lanes);
     front.panel = plan.panels;
     plan.panels += static_cast<std::size_t>(front.stride) * static_cast<std::size_t>(front.columns);
   }
@@ -402,7 +404,7 @@ void add_entries(const Compressed& lower, const Compressed& border, const std::v
       const int position = plan.place[border.index[at]];
       const Front& front = plan.fronts[front_of[position]];
       entries[front_of[position]].push_back(
-          {at, static_cast<std::uint32_t>(front.rows() + plan.border[k] - front.border +
+          {at, static_cast<std::uint32_t>(front.first_border() + plan.border[k] - front.border +
                                           (position - front.first) * front.stride)});
     }
   }

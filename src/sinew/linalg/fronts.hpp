@@ -14,7 +14,8 @@
 namespace sinew::linalg {
 
 /// Unknowns that are eliminated together, and what they meet. Its panel has the rows: its own unknowns, those below
-/// (later ones that they meet), then the border rows that reach it. Its update is what the panel does to the last two.
+/// (later ones that they meet), one of the right side, and the border rows that reach it. Its update is what the panel
+/// does to all but its own.
 struct Front {
   int first = 0, columns = 0;   ///< its own: positions first .. before first + columns in the order of elimination
   int below = 0;                ///< how many below
@@ -35,7 +36,9 @@ struct Front {
   int child_count = 0;
 
   int rows() const { return columns + below; }
-  int height() const { return rows() + borders; }
+  int right() const { return rows(); }  ///< the right side's row
+  int first_border() const { return rows() + 1; }
+  int height() const { return first_border() + borders; }
 };
 
 struct Fronts {

@@ -127,13 +127,12 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   if (kind == solid::Tangent::exact) add_rim(context, iterate, number, W);
   volume.symmetric = Z_.size() == 0;
   if (!model.watched.empty()) {
-    const auto& place = factor_->plan().border;
     const auto rows = static_cast<Eigen::Index>(kept_.size());
     volume.W.resize(rows, rows);
     for (Eigen::Index j = 0; j < rows; ++j) {
-      for (Eigen::Index i = volume.symmetric ? j : 0; i < rows; ++i)
-        volume.W(i, j) = W(place[static_cast<std::size_t>(kept_[static_cast<std::size_t>(i)])],
-                           place[static_cast<std::size_t>(kept_[static_cast<std::size_t>(j)])]);
+      const auto from = W.col(kept_places_[j]);
+      auto to = volume.W.col(j);
+      for (Eigen::Index i = volume.symmetric ? j : 0; i < rows; ++i) to[i] = from[kept_places_[i]];
     }
   }
   return Z_.allFinite();
@@ -145,6 +144,8 @@ void FreeMotion::plan(const SolidModel& model) {
   kept_.resize(3 * model.rows.size());
   std::iota(kept_.begin(), kept_.end(), 0);
   std::sort(kept_.begin(), kept_.end(), [&place](int a, int b) { return place[a] < place[b]; });
+  kept_places_.resize(static_cast<Eigen::Index>(kept_.size()));
+  std::transform(kept_.begin(), kept_.end(), kept_places_.begin(), [&place](int own) { return place[own]; });
 }
 
 int FreeMotion::row_of(const SolidModel& model, const Model& whole, int border_row) {

@@ -80,11 +80,12 @@ class FreeMotion {
   const Eigen::VectorXd& with_rim(const Eigen::VectorXd& y);
 
   std::optional<linalg::SparseFactor> factor_;
-  std::vector<int> kept_;       ///< border rows that are rows of the scene, in the order in which they are kept
-  Eigen::MatrixXd compliance_;  ///< where points are watched: of all border rows, as they are kept
-  Eigen::VectorXd free_;        ///< motion of the border rows by the push
-  std::vector<int> rim_;        ///< unknowns of P
-  Eigen::MatrixXd N_, Y_, Z_;   ///< V = 1 - Y Z Y^T S; empty where A is symmetric
+  std::vector<int> kept_;        ///< border rows that are rows of the scene, in the order in which they are kept
+  Eigen::VectorXi kept_places_;  ///< and their places in that order
+  Eigen::MatrixXd compliance_;   ///< where points are watched: of all border rows, as they are kept
+  Eigen::VectorXd free_;         ///< motion of the border rows by the push
+  std::vector<int> rim_;         ///< unknowns of P
+  Eigen::MatrixXd N_, Y_, Z_;    ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
   Eigen::VectorXd push_, pushed_, moved_;  ///< what the forces left unbalanced, half solved
   std::vector<int> reach_;                 ///< where rows of contacts may have entries

@@ -13,7 +13,9 @@ using linalg::Matrix6X;
 using linalg::Vec6;
 
 /// A solution is good enough with such a residual, and refined while it is larger than the first.
-constexpr double kAimed = 8e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
+constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
+/// What is only expected of a residual is to be by so much smaller.
+constexpr double kCertain = 1e-2;
 /// A compliance smaller than this part of the largest one counts as none.
 constexpr double kVanished = 1e-10;
 
@@ -446,6 +448,15 @@ void CoupledFactor::find_strains(const RightSide& right, CoupledSolution& soluti
   }
 }
 
+/// What a residual is measured against.
+double CoupledFactor::size_of(const RightSide& right, const CoupledSolution& solution) const {
+  const Eigen::Index nz = unknowns_of(*problem_), rows = right.c.size();
+  return std::max({largest(right.r.cwiseProduct(scale_.head(nz))),
+                   largest(right.c.cwiseProduct(scale_.segment(nz, rows))),
+                   largest(solution.dz.cwiseQuotient(scale_.head(nz))),
+                   largest(solution.dlambda.cwiseQuotient(scale_.segment(nz, rows)))});
+}
+
 double CoupledFactor::residual(const RightSide& right, const CoupledSolution& solution, RightSide& rest) {
   const CoupledProblem& problem = *problem_;
   const Eigen::Index nz = unknowns_of(problem), border = border_size(problem);
@@ -454,7 +465,6 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
   Eigen::VectorXd& left = left_;
   left.resize(border);
   left << -right.r, right.c;
-  const double given = largest(left.cwiseProduct(scale_.head(border)));
   const auto* z = y_.data();
   const auto* lambda = y_.data() + nz;
   for (const auto& [row, column, value] : problem.B) left[row] -= value * z[column];
@@ -498,21 +508,28 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
     if (size > 0.0) relative = std::max(relative, largest(own) / size);
     if (!x.allFinite()) relative = INFINITY;
   }
-  const double size = std::max(given, largest(y_.cwiseQuotient(scale_.head(border))));
+  const double size = size_of(right, solution);
   if (size > 0.0) relative = std::max(relative, largest(left.cwiseProduct(scale_.head(border))) / size);
   rest.r = -left.head(nz);
   rest.c = left.tail(border - nz);
   return left.allFinite() ? relative : INFINITY;
 }
 
-/// Until the equations hold, or do not get better; tells whether they do.
+/// Until the equations hold, or do not get better; tells whether they do. What a solution leaves of its equations goes
+/// with its own size, so that what a small correction leaves need not be looked at.
 void CoupledFactor::refine(const RightSide& right, CoupledSolution& solution) {
   constexpr int kRefinements = 4;
   solution.residual = residual(right, solution, rest_);
   for (int i = 0; i < kRefinements && solution.residual > kAimed && std::isfinite(solution.residual); ++i) {
     if (kind_ == Kind::singular) break;
     solve_once(rest_, correction_);
+    const double left = solution.residual * size_of(rest_, correction_) / size_of(right, solution);
     correction_ += solution;
+    if (left < kCertain * kAimed) {
+      std::swap(solution, correction_);
+      solution.residual = left;
+      break;
+    }
     const double relative = residual(right, correction_, rest_);
     if (!(relative < solution.residual)) break;
     std::swap(solution, correction_);

@@ -129,6 +129,7 @@ class CoupledFactor {
   void solve_once(const RightSide& right, CoupledSolution& solution, Part part = Part::all);
   void find_strains(const RightSide& right, CoupledSolution& solution);
   void refine(const RightSide& right, CoupledSolution& solution);
+  double size_of(const RightSide& right, const CoupledSolution& solution) const;
   /// Right side minus matrix times solution, and its largest entry beside the right side's and the solution's, as the
   /// border weighs them.
   double residual(const RightSide& right, const CoupledSolution& solution, RightSide& rest);
