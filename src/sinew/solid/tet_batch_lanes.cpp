@@ -26,12 +26,14 @@ FourVectors turned(const Four& x, const Four& y, const Four& z) {
            __builtin_shufflevector(xy02, z02, 2, 3, 6, 7), __builtin_shufflevector(xy13, z13, 2, 3, 6, 7)}};
 }
 
-/// Two vectors, each followed by a zero, of a node of each element of a register: what the nodes' records hold.
+// A record is two vectors, each followed by a zero. Where it fills a register, both are loaded, turned and stored as
+// one; elsewhere registers are too few to hold both.
+#if SINEW_LANES == 8
+
 struct Two {
   Vector first, second;
 };
 
-#if SINEW_LANES == 8
 /// Eight records turned into registers of their numbers, by way of x x' z z' and y y' 0 0 of two records each.
 template <class Load>
 Two turned(const Load& row) {
@@ -73,71 +75,68 @@ void turned_back(const Two& v, const Take& take) {
     }
   }
 }
-#endif
 
 /// What the records of the nodes of one register's elements hold.
 Two gather(const double* records, const int* node) {
-#if SINEW_LANES == 8
   return turned([&](int i) { return load(records + 8L * node[i]); });
-#else
-  Two v;
-  const auto take = [&](Vector& to, const double* from) {
-    if constexpr (kWidth < 4) {
-      for (int i = 0; i < kWidth; ++i) {
-        const double* own = from + 8L * node[i];
-        to.x[i] = own[0];
-        to.y[i] = own[1];
-        to.z[i] = own[2];
-      }
-    } else {
-      for (int i = 0; i < kWidth; i += 4) {
-        const auto at = [&](int k) -> const Four& { return four(from + 8L * node[i + k]); };
-        const Four ab02 = __builtin_shufflevector(at(0), at(1), 0, 4, 2, 6),
-                   ab13 = __builtin_shufflevector(at(0), at(1), 1, 5, 3, 7),
-                   cd02 = __builtin_shufflevector(at(2), at(3), 0, 4, 2, 6),
-                   cd13 = __builtin_shufflevector(at(2), at(3), 1, 5, 3, 7);
-        reinterpret_cast<Four*>(&to.x)[i / 4] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
-        reinterpret_cast<Four*>(&to.y)[i / 4] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
-        reinterpret_cast<Four*>(&to.z)[i / 4] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
-      }
-    }
-  };
-  take(v.first, records);
-  take(v.second, records + 4);
-  return v;
-#endif
 }
 
 /// Adds to them.
 void scatter(const Two& v, const int* node, double* records) {
-#if SINEW_LANES == 8
   turned_back(v, [&](int i, const Lanes& own) {
     double* const to = records + 8L * node[i];
     store(to, load(to) + own);
   });
-#else
-  const auto add = [&](const Vector& own, double* to) {
-    if constexpr (kWidth < 4) {
-      for (int i = 0; i < kWidth; ++i) {
-        double* sum = to + 8L * node[i];
-        sum[0] += own.x[i];
-        sum[1] += own.y[i];
-        sum[2] += own.z[i];
-      }
-    } else {
-      const auto* x = reinterpret_cast<const Four*>(&own.x);
-      const auto* y = reinterpret_cast<const Four*>(&own.y);
-      const auto* z = reinterpret_cast<const Four*>(&own.z);
-      for (int i = 0; i < kWidth; i += 4) {
-        const FourVectors four = turned(x[i / 4], y[i / 4], z[i / 4]);
-        for (int k = 0; k < 4; ++k) add_four(to + 8L * node[i + k], four.of[k]);
-      }
-    }
-  };
-  add(v.first, records);
-  add(v.second, records + 4);
-#endif
 }
+
+#else
+
+/// One of the vectors in the records of the nodes of one register's elements.
+Vector gather(const double* vectors, const int* node) {
+  Vector v;
+  if constexpr (kWidth < 4) {
+    for (int i = 0; i < kWidth; ++i) {
+      const double* own = vectors + 8L * node[i];
+      v.x[i] = own[0];
+      v.y[i] = own[1];
+      v.z[i] = own[2];
+    }
+  } else {
+    for (int i = 0; i < kWidth; i += 4) {
+      const auto at = [&](int k) -> const Four& { return four(vectors + 8L * node[i + k]); };
+      const Four ab02 = __builtin_shufflevector(at(0), at(1), 0, 4, 2, 6),
+                 ab13 = __builtin_shufflevector(at(0), at(1), 1, 5, 3, 7),
+                 cd02 = __builtin_shufflevector(at(2), at(3), 0, 4, 2, 6),
+                 cd13 = __builtin_shufflevector(at(2), at(3), 1, 5, 3, 7);
+      reinterpret_cast<Four*>(&v.x)[i / 4] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
+      reinterpret_cast<Four*>(&v.y)[i / 4] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
+      reinterpret_cast<Four*>(&v.z)[i / 4] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
+    }
+  }
+  return v;
+}
+
+/// Adds to it.
+void scatter(const Vector& v, const int* node, double* vectors) {
+  if constexpr (kWidth < 4) {
+    for (int i = 0; i < kWidth; ++i) {
+      double* own = vectors + 8L * node[i];
+      own[0] += v.x[i];
+      own[1] += v.y[i];
+      own[2] += v.z[i];
+    }
+  } else {
+    const auto* x = reinterpret_cast<const Four*>(&v.x);
+    const auto* y = reinterpret_cast<const Four*>(&v.y);
+    const auto* z = reinterpret_cast<const Four*>(&v.z);
+    for (int i = 0; i < kWidth; i += 4) {
+      const FourVectors own = turned(x[i / 4], y[i / 4], z[i / 4]);
+      for (int k = 0; k < 4; ++k) add_four(vectors + 8L * node[i + k], own.of[k]);
+    }
+  }
+}
+
+#endif
 
 /// Some elements of a batch: those of one register.
 struct Part {
@@ -158,23 +157,40 @@ struct Part {
     put(A.c2, to[2]);
   }
   Vector gradient(int a) const { return (*this)(batch.gradient[a]); }
-  /// sum_a v_a g_a^T of both vectors in the nodes' records; the fourth gradient is minus the sum of the others.
-  struct TwoGradients {
-    Matrix first, second;
-  };
-  TwoGradients gradients_of(const double* records) const {
-    const auto at = [&](int a) { return gather(records, batch.node[a] + first); };
-    const Two last = at(3);
-    TwoGradients sum = {};
-    for (int a = 0; a < 3; ++a) {
-      const Two own = at(a);
-      const Vector g = gradient(a);
-      sum.first = sum.first + outer(own.first - last.first, g);
-      sum.second = sum.second + outer(own.second - last.second, g);
-    }
-    return sum;
-  }
+  const int* node(int a) const { return batch.node[a] + first; }
 };
+
+/// sum_a v_a g_a^T of both vectors in the nodes' records; the fourth gradient is minus the sum of the others.
+struct Gradient {
+  Matrix first, second;
+};
+#if SINEW_LANES == 8
+Gradient gradient_of(const Part& part, const double* records) {
+  const Two last = gather(records, part.node(3));
+  Gradient sum = {};
+  for (int a = 0; a < 3; ++a) {
+    const Two own = gather(records, part.node(a));
+    const Vector g = part.gradient(a);
+    sum.first = sum.first + outer(own.first - last.first, g);
+    sum.second = sum.second + outer(own.second - last.second, g);
+  }
+  return sum;
+}
+#else
+Matrix gradient_of(const Part& part, const double* vectors) {
+  const Vector last = gather(vectors, part.node(3));
+  const auto of = [&](int a) { return outer(gather(vectors, part.node(a)) - last, part.gradient(a)); };
+  return of(0) + of(1) + of(2);
+}
+#endif
+/// Of the second vectors alone.
+Matrix second_gradient_of(const Part& part, const double* records) {
+#if SINEW_LANES == 8
+  return gradient_of(part, records).second;
+#else
+  return gradient_of(part, records + 4);
+#endif
+}
 
 template <class Visit>
 void each_part(const TetBatch& batch, const Visit& visit) {
@@ -241,44 +257,84 @@ Symmetric viscous_stress(const Part& part, const Matrix& F, const Matrix& dF, do
           mu * (dot(middle.c2, dF.c0) + dot(middle.c0, dF.c2))};
 }
 
+/// Finds R, and keeps it with F.
+Matrix find_frame(const Part& part, const Matrix& F, TetFrames& frames) {
+  Truth found;
+  const Matrix R = rotation(F, found);
+  part.put(R, frames.R);
+  part.put(F, frames.F);
+  frames.missing |= bits(found == 0, part.first);
+  return R;
+}
+
+/// The nodes of a part's elements; of those that are missing, another one instead.
+class Nodes {
+ public:
+  Nodes(const Part& part, unsigned missing, int nowhere) {
+    for (int a = 0; a < 4; ++a) {
+      node_[a] = part.node(a);
+      if (missing >> part.first == 0) continue;
+      for (int i = 0; i < kWidth; ++i) other_[a][i] = missing >> (part.first + i) & 1U ? nowhere : part.node(a)[i];
+      node_[a] = other_[a];
+    }
+  }
+  const int* operator()(int a) const { return node_[a]; }
+
+ private:
+  const int* node_[4];
+  int other_[4][kWidth];
+};
+
+/// Stresses times volume, by columns.
+Matrix elastic_stress(const Part& part, const Matrix& F, const Matrix& R) {
+  return (F - R) * (2.0 * part(part.batch.mu)) + R * (part(part.batch.lambda) * (dot(R, F) - 3.0));
+}
+Matrix viscous_stress_times(const Part& part, const Matrix& F, const Matrix& motion, double rate) {
+  const Symmetric S = viscous_stress(part, F, motion, rate);
+  return {F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}};
+}
+
+#if SINEW_LANES == 8
 [[gnu::flatten]] void add_forces(const TetBatch& batch, const double* nodes, double rate, int nowhere,
                                  TetFrames& frames, double* forces) {
   frames.missing = 0;
+  const Part part{batch, 0};
+  const auto [F, dF] = gradient_of(part, nodes);
+  const Matrix R = find_frame(part, F, frames);
+  const Matrix elastic = elastic_stress(part, F, R),
+               viscous = rate > 0.0 ? viscous_stress_times(part, F, dF, rate) : Matrix{};
+  const Nodes node(part, frames.missing, nowhere);
+  Two last = {};
+  for (int a = 0; a < 3; ++a) {
+    const Two own = {elastic * part.gradient(a), viscous * part.gradient(a)};
+    scatter(own, node(a), forces);
+    last = {last.first - own.first, last.second - own.second};
+  }
+  scatter(last, node(3), forces);
+}
+#else
+// All rotations first: their iterations wait for themselves, and pass by each other.
+[[gnu::flatten]] void add_forces(const TetBatch& batch, const double* nodes, double rate, int nowhere,
+                                 TetFrames& frames, double* forces) {
+  frames.missing = 0;
+  each_part(batch, [&](const Part& part) { find_frame(part, gradient_of(part, nodes), frames); });
   each_part(batch, [&](const Part& part) {
-    const auto [F, dF] = part.gradients_of(nodes);
-    Truth found;
-    const Matrix R = rotation(F, found);
-    part.put(R, frames.R);
-    part.put(F, frames.F);
-    const unsigned missing = bits(found == 0, part.first);
-    frames.missing |= missing;
-    int other[4][kWidth];
-    if (missing != 0) {
-      for (int a = 0; a < 4; ++a) {
-        for (int i = 0; i < kWidth; ++i)
-          other[a][i] = missing >> (part.first + i) & 1U ? nowhere : batch.node[a][part.first + i];
+    const Matrix F = part(frames.F);
+    const Nodes node(part, frames.missing, nowhere);
+    const auto add = [&](const Matrix& stress, double* sum) {
+      Vector last = {};
+      for (int a = 0; a < 3; ++a) {
+        const Vector own = stress * part.gradient(a);
+        scatter(own, node(a), sum);
+        last = last - own;
       }
-    }
-    const Lanes pressure = part(batch.lambda) * (dot(R, F) - 3.0);
-    const Matrix elastic = (F - R) * (2.0 * part(batch.mu)) + R * pressure;
-    Matrix viscous = {};
-    if (rate > 0.0) {
-      const Symmetric S = viscous_stress(part, F, dF, rate);
-      viscous = {F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}};
-    }
-    Two last = {};
-    const auto add = [&](int a, const Two& own) {
-      scatter(own, missing != 0 ? other[a] : batch.node[a] + part.first, forces);
+      scatter(last, node(3), sum);
     };
-    for (int a = 0; a < 3; ++a) {
-      const Vector g = part.gradient(a);
-      const Two own = {elastic * g, viscous * g};
-      add(a, own);
-      last = {last.first - own.first, last.second - own.second};
-    }
-    add(3, last);
+    add(elastic_stress(part, F, part(frames.R)), forces);
+    if (rate > 0.0) add(viscous_stress_times(part, F, gradient_of(part, nodes + 4), rate), forces + 4);
   });
 }
+#endif
 
 /// A part's gradients, and what a matrix makes of them.
 struct Gradients {
@@ -393,7 +449,7 @@ Symmetric inverse(const Symmetric& A) {
     }
     const Projected viscous = viscosity(part, F, g, rate);
     const Symmetric common = square(F, viscous.mu, mu);
-    const Symmetric S = rate > 0.0 ? viscous_stress(part, F, part.gradients_of(nodes).second, rate) : Symmetric{};
+    const Symmetric S = rate > 0.0 ? viscous_stress(part, F, second_gradient_of(part, nodes), rate) : Symmetric{};
     put_blocks(part, stiffness, [&](int a, int b) {
       const Vector& ta = t.of[a];
       Matrix K = common * dot(g.of[a], g.of[b]) + outer(ta * lambda, t.of[b]) + viscous(a, b) +
