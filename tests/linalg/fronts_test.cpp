@@ -345,6 +345,10 @@ TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
   SparseFactor alone(plan);
   ASSERT_TRUE(alone.factor(A, H));
   const Eigen::VectorXd x = alone.solve(b);
+  Eigen::VectorXd y, u, own_y, own_u;
+  const HalfSolve right{b, y, &u}, own_right{b, own_y, &own_u};
+  ASSERT_TRUE(alone.factor(threads::Crew::none(), &right));
+  EXPECT_LT((u - H * x).norm(), 1e-13 * u.norm());
   Eigen::MatrixXd W, own;
   W = alone.compliance();
   EXPECT_LT((A.selfadjointView<Eigen::Lower>() * x - b).norm(), 1e-13 * b.norm());
@@ -360,6 +364,9 @@ TEST(Fronts, CrewsOfAnySizeGiveTheSameBits) {
       own = factor.compliance();
       EXPECT_EQ(own, W);
       EXPECT_EQ(factor.solve(b), x);
+      ASSERT_TRUE(factor.factor(crew, &own_right));
+      EXPECT_EQ(own_y, y);
+      EXPECT_EQ(own_u, u);
     }
   }
 }

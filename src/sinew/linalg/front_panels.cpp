@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -58,7 +57,7 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
     if (right) end(*right);
     return true;
   }
-  // No border row reaches two parts: each writes its own columns of W.
+  // No border row reaches two parts: each writes its own columns of W, and its own places of u and y.
   std::atomic<bool> ok = true;
   std::atomic<std::uint64_t> taken = 0;  // rooms, a bit each
   static_assert(threads::Crew::kMost <= 64);

@@ -73,8 +73,9 @@ class FrontPanels {
   std::vector<Room> rooms_;  ///< of parts that are done at one time
   Eigen::VectorXd diagonal_;
   Vector pivots_, signs_;
-  Matrix minus_W_;                                  ///< -H A^-1 H^T below its diagonal, in the order of the plan
-  mutable Vector own_, below_, whole_, bordering_;  ///< room for solves: one thread at a time
+  Matrix minus_W_;  ///< -H A^-1 H^T below its diagonal, in the order of the plan
+  mutable Vector own_, below_, whole_,
+      bordering_;  ///< room for solves: one thread at a time (`factor` adds to the last by parts)
 };
 
 extern template class FrontPanels<float>;

@@ -100,7 +100,11 @@ bool SparseFactor::factor(const Matrix& A, const Rows& border, threads::Crew& cr
 }
 
 bool SparseFactor::factor(threads::Crew& crew, const HalfSolve* right) {
-  if (size() == 0) return true;
+  if (size() == 0) {
+    if (right) right->y.resize(0);
+    if (right && right->u) right->u->setZero(borders());
+    return true;
+  }
   return std::visit(
       [&](auto& panels) {
         if (!panels.factor(values_, border_values_, crew, right)) return false;

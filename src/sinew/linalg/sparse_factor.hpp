@@ -49,7 +49,7 @@ class SparseFactor {
   Matrix assembled() const;
   /// False if rounding is all that is left of a pivot, or it is not finite; solves are then meaningless.
   /// The result is the same to the last bit, whatever the crew. What stands on the `right` is half solved on the way,
-  /// while the factor is in the caches.
+  /// as one more row.
   bool factor(threads::Crew& crew = threads::Crew::none(), const HalfSolve* right = nullptr);
   /// All of it, for matrices of the plan's patterns.
   bool factor(const Matrix& A, const Rows& border = {}, threads::Crew& crew = threads::Crew::none());

@@ -25,6 +25,7 @@ void SymmetricFactor::solve(double* b) const {
   std::fill(b + size_, b + stride_, 0.0);
   int first = 0;  // what is zero stays so
   while (first < size_ && b[first] == 0.0) ++first;
+  if (first == size_) return;
   first -= first % kLanes;
   kernels_->solve(panel_.data() + static_cast<std::ptrdiff_t>(first) * (stride_ + 1), stride_, size_ - first,
                   b + first);

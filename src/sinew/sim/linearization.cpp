@@ -232,8 +232,9 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
   } else {
     increment.forces = {};
   }
+  polished_ = true;
   if (steer && increment.reduced.ok) steer(increment);
-  if (rough && !increment.reduced.ok) {
+  if (rough && !polished_) {  // once more, from a good one
     factor_.solve(side, increment.reduced);
     if (increment.reduced.ok) steer(increment);
   }

@@ -81,13 +81,15 @@ class Linearization {
   /// How multipliers move watched points [m], and, while the last forces on volumes still stand (`pushed`), these.
   void watched_motion(const Eigen::VectorXd& dlambda, bool pushed, Eigen::Ref<Eigen::VectorXd> motion);
 
-  /// What was last solved for, and what was `couple`d without looking at what is left of its equations; increments that
+  /// What was last solved for, and what is answered without looking at what is left of its equations; increments that
   /// are sums of both are then polished as one, for the sum of their right sides.
   const solve::RightSide& side() const { return side_; }
   void answer(const solve::RightSide& side, solve::CoupledSolution& solution, solve::CoupledFactor::Part part) {
     factor_.answer(side, solution, part);
   }
-  void polish(const solve::RightSide& side, Increment& increment) { factor_.polish(side, increment.reduced); }
+  void polish(const solve::RightSide& side, Increment& increment) {
+    polished_ = factor_.polish(side, increment.reduced);
+  }
 
   /// Contacts and rubbing points are part of what is solved here.
   bool touched() const { return contacts_ready_; }
@@ -119,7 +121,7 @@ class Linearization {
   /// What comes after volumes have been pushed.
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
               const Steer& steer, std::optional<solve::CoupledFactor::Part> rough = {});
-  void push_all(const Linearization& right);
+  void push_all(const Linearization& right);  ///< volumes by another's forces, and side_ with it
   /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
   void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 
@@ -139,6 +141,7 @@ class Linearization {
   solve::CoupledFactor factor_;
   ContactRoom contacts_;
   ContactForces contact_forces_;
+  bool polished_ = true;         ///< the last sum of answers was near
   bool contacts_ready_ = false;  ///< their compliance is that of these factors
   std::vector<Eigen::VectorXd> pushes_;
   solve::RightSide side_;

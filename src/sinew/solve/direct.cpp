@@ -12,10 +12,9 @@ namespace {
 using linalg::Matrix6X;
 using linalg::Vec6;
 
-/// A solution is good enough with such a residual, and refined while it is larger than the first.
-constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6;
-/// What is only expected of a residual is to be by so much smaller.
-constexpr double kCertain = 1e-2;
+/// A solution is good enough with such a residual, and refined while it is larger than the first (if only expected:
+/// than the last).
+constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6, kExpected = 2e-15;
 /// A compliance smaller than this part of the largest one counts as none.
 constexpr double kVanished = 1e-10;
 
@@ -121,6 +120,11 @@ void each_tied(const ChainPart& part, const Visit& visit) {
   for (Eigen::Index i = 0; i < part.base.cols(); ++i) visit(part.first_base + static_cast<int>(i));
   for (const int i : part.at) visit(i);
   for (const int i : part.whole_at) visit(i);
+}
+
+bool finite(const CoupledSolution& solution) {
+  return solution.dz.allFinite() && solution.dlambda.allFinite() &&
+         std::all_of(solution.dq.begin(), solution.dq.end(), [](const auto& own) { return own.allFinite(); });
 }
 
 template <class Vector>
@@ -448,9 +452,8 @@ void CoupledFactor::find_strains(const RightSide& right, CoupledSolution& soluti
   }
 }
 
-/// What a residual is measured against.
 double CoupledFactor::size_of(const RightSide& right, const CoupledSolution& solution) const {
-  const Eigen::Index nz = unknowns_of(*problem_), rows = right.c.size();
+  const Eigen::Index nz = right.r.size(), rows = right.c.size();
   return std::max({largest(right.r.cwiseProduct(scale_.head(nz))),
                    largest(right.c.cwiseProduct(scale_.segment(nz, rows))),
                    largest(solution.dz.cwiseQuotient(scale_.head(nz))),
@@ -515,29 +518,26 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
   return left.allFinite() ? relative : INFINITY;
 }
 
-/// Until the equations hold, or do not get better; tells whether they do. What a solution leaves of its equations goes
-/// with its own size, so that what a small correction leaves need not be looked at.
-void CoupledFactor::refine(const RightSide& right, CoupledSolution& solution) {
+/// Until the equations hold, or do not get better; tells what was left at first. What a solution leaves goes with its
+/// size: what the correction of a good one leaves is so small that it is not looked at.
+double CoupledFactor::refine(const RightSide& right, CoupledSolution& solution) {
   constexpr int kRefinements = 4;
-  solution.residual = residual(right, solution, rest_);
+  const double limit = kind_ == Kind::symmetric ? kSymmetric : kind_ == Kind::general ? kTolerance : kSingular;
+  const double first = solution.residual = residual(right, solution, rest_);
   for (int i = 0; i < kRefinements && solution.residual > kAimed && std::isfinite(solution.residual); ++i) {
     if (kind_ == Kind::singular) break;
     solve_once(rest_, correction_);
-    const double left = solution.residual * size_of(rest_, correction_) / size_of(right, solution);
+    const double expected = solution.residual * size_of(rest_, correction_) / size_of(right, solution);
+    const bool look = !(solution.residual < limit && expected < kExpected && finite(correction_));
     correction_ += solution;
-    if (left < kCertain * kAimed) {
-      std::swap(solution, correction_);
-      solution.residual = left;
-      break;
-    }
-    const double relative = residual(right, correction_, rest_);
+    const double relative = look ? residual(right, correction_, rest_) : std::max(expected, 1e-16);
     if (!(relative < solution.residual)) break;
     std::swap(solution, correction_);
     solution.residual = relative;
   }
   solution.redundant = kind_ == Kind::singular;
-  const double limit = kind_ == Kind::symmetric ? kSymmetric : kind_ == Kind::general ? kTolerance : kSingular;
   solution.ok = solution.residual < limit;
+  return first;
 }
 
 void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution, Part part) {
@@ -545,16 +545,14 @@ void CoupledFactor::answer(const RightSide& right, CoupledSolution& solution, Pa
   solve_once(right, solution, part);
   solution.redundant = false;
   solution.residual = 0.0;
-  solution.ok = solution.dz.allFinite() && solution.dlambda.allFinite() &&
-                std::all_of(solution.dq.begin(), solution.dq.end(), [](const auto& own) { return own.allFinite(); });
+  solution.ok = finite(solution);
 }
 
-void CoupledFactor::polish(const RightSide& right, CoupledSolution& solution) {
+bool CoupledFactor::polish(const RightSide& right, CoupledSolution& solution) {
   if (!joined_) find_strains(right, solution);
-  refine(right, solution);
-  if (solution.ok) return;
-  if (kind_ != Kind::symmetric) return solve(right, solution);
-  factor_general(false);
+  const bool good = refine(right, solution) < kTolerance && solution.ok;
+  if (!solution.ok) solve(right, solution);
+  return good;
 }
 
 void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {

@@ -105,13 +105,14 @@ class CoupledFactor {
   /// And the border.
   void factor();
   void solve(const RightSide& right, CoupledSolution& solution);
-  /// One of several solutions that are put together, and then polished as one: what is left of its equations is neither
-  /// looked at, nor told in `residual`. Without the strains these are zero.
+  /// How much of a solution is wanted; strains that are not are zero.
   enum class Part { all, without_strains };
+  /// One of several solutions that are put together, and then polished as one: what is left of its equations is neither
+  /// looked at, nor told in `residual`.
   void answer(const RightSide& right, CoupledSolution& solution, Part part = Part::all);
-  /// Finds the strains of a solution that is near, and refines it: as good as one by `solve`. Where it is not `ok`, the
-  /// factor was not good enough for the parts either: they are to be answered again, by another one.
-  void polish(const RightSide& right, CoupledSolution& solution);
+  /// Finds the strains of a solution that is near, and refines it; where that does not help, solves again. False where
+  /// it was not that near: what has been made of its parts is not good for much either.
+  bool polish(const RightSide& right, CoupledSolution& solution);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
   /// no more of them than rows. Costs an eigenvalue problem of the border where that has no symmetric factor.
@@ -128,7 +129,8 @@ class CoupledFactor {
   void weigh();
   void solve_once(const RightSide& right, CoupledSolution& solution, Part part = Part::all);
   void find_strains(const RightSide& right, CoupledSolution& solution);
-  void refine(const RightSide& right, CoupledSolution& solution);
+  double refine(const RightSide& right, CoupledSolution& solution);
+  /// What a residual is measured against.
   double size_of(const RightSide& right, const CoupledSolution& solution) const;
   /// Right side minus matrix times solution, and its largest entry beside the right side's and the solution's, as the
   /// border weighs them.
