@@ -12,8 +12,7 @@ namespace {
 using linalg::Matrix6X;
 using linalg::Vec6;
 
-/// A solution is good enough with such a residual, and refined while it is larger than the first (if only expected:
-/// than the last).
+/// A solution is good enough with such a residual, and refined while it is larger than the first (expected: the last).
 constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6, kExpected = 2e-15;
 /// A compliance smaller than this part of the largest one counts as none.
 constexpr double kVanished = 1e-10;
@@ -518,8 +517,8 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
   return left.allFinite() ? relative : INFINITY;
 }
 
-/// Until the equations hold, or do not get better; tells what was left at first. What a solution leaves goes with its
-/// size: what the correction of a good one leaves is so small that it is not looked at.
+/// Until the equations hold, or do not get better; tells what was left at first. What a correction leaves goes with its
+/// size, and is expected where it is small.
 double CoupledFactor::refine(const RightSide& right, CoupledSolution& solution) {
   constexpr int kRefinements = 4;
   const double limit = kind_ == Kind::symmetric ? kSymmetric : kind_ == Kind::general ? kTolerance : kSingular;
