@@ -103,8 +103,8 @@ void strip(Real* C, int stride, const Product& product, int top, int height, int
 constexpr int kChunk = 240, kDepth = 256;
 static_assert(kChunk % (kDown * kWidth) == 0 && kChunk % kAcross == 0);
 
-/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`; signs go into a copy of the few rows of
-/// B. Rows of B beside the last are read, and lead nowhere.
+/// C <- C - A S A^T as in Kernels::update, for the rows `top` .. before `height`; signs go into a copy of the few rows
+/// of B. Rows of B beside the last are read, and lead nowhere.
 [[gnu::always_inline]] inline void update_rows(Real* C, int C_stride, const Product& product, int top, int height,
                                                int columns, bool fresh) {
   Real signed_B[kDepth * kAcross];
