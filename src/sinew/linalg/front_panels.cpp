@@ -51,8 +51,7 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
   if (crew.size() == 1) {  // updates are added while they are in the caches
     Real* const room = rooms_.empty() ? nullptr : rooms_.front().updates.data();
     for (const Front& front : plan_->fronts) {
-      if (!factor_front(front, room, crew, right)) return false;
-      if (right) take_right(front, below_, *right);
+      if (!factor_front(front, room, below_, crew, right)) return false;
     }
     if (right) end(*right);
     return true;
@@ -70,15 +69,13 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
     const Fronts::Part& part = plan_->parts[static_cast<std::size_t>(i)];
     for (int s = part.first; s < part.end && ok; ++s) {
       const Front& front = plan_->fronts[static_cast<std::size_t>(s)];
-      if (!factor_front(front, room.updates.data(), threads::Crew::none(), right)) ok = false;
-      if (right && ok) take_right(front, room.spare, *right);
+      if (!factor_front(front, room.updates.data(), room.spare, threads::Crew::none(), right)) ok = false;
     }
     taken &= ~own;
   });
   for (const int s : plan_->top) {
     const Front& front = plan_->fronts[static_cast<std::size_t>(s)];
-    if (!ok || !factor_front(front, nullptr, crew, right)) return false;
-    if (right) take_right(front, below_, *right);
+    if (!ok || !factor_front(front, nullptr, below_, crew, right)) return false;
   }
   if (ok && right) end(*right);
   return ok;
@@ -117,7 +114,8 @@ void FrontPanels<Real>::take_right(const Front& front, Vector& spare, const Half
 }
 
 template <class Real>
-bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Crew& crew, const HalfSolve* right) {
+bool FrontPanels<Real>::factor_front(const Front& front, Real* room, Vector& spare, threads::Crew& crew,
+                                     const HalfSolve* right) {
   constexpr int kColumns = 96;  // of a panel at a time
   Real* const panel = panels_.data() + front.panel;
   const int height = front.height();
@@ -141,6 +139,7 @@ bool FrontPanels<Real>::factor_front(const Front& front, Real* room, threads::Cr
   kernels_->update(minus_W_.data() + front.border * (minus_W_.outerStride() + 1),
                    static_cast<int>(minus_W_.outerStride()), panel + front.first_border(), front.stride, front.borders,
                    front.borders, front.columns, signs, false);
+  if (right) take_right(front, spare, *right);
   return true;
 }
 

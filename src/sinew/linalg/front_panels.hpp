@@ -55,7 +55,7 @@ class FrontPanels {
   void eliminate(const Front& front, const HalfSolve& right) const;
   void end(const HalfSolve& right) const;
   void start_panel(const Front& front, const HalfSolve* right);
-  bool factor_front(const Front& front, Real* room, threads::Crew& crew, const HalfSolve* right);
+  bool factor_front(const Front& front, Real* room, Vector& spare, threads::Crew& crew, const HalfSolve* right);
   void take_right(const Front& front, Vector& spare, const HalfSolve& right);
   Real* update_of(const Front& front, Real* room) { return (front.in_part ? room : updates_.data()) + front.update; }
   void add_children(const Front& front, Real* room, bool to_panel, threads::Crew& crew);

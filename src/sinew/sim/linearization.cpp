@@ -164,19 +164,9 @@ bool Linearization::unstable() const {
   return !rotated_ && coupled_ && conservative() && negative_ + factor_.negative() > context_->model.rows;
 }
 
-void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer) {
+void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer,
+                          std::optional<solve::CoupledFactor::Part> rough) {
   const Clock clock(times_->solve);
-  push_all(right);
-  follow(pushes_, side_, increment, steer);
-}
-
-void Linearization::solve_roughly(Increment& increment, const Steer& steer, solve::CoupledFactor::Part part) {
-  const Clock clock(times_->solve);
-  push_all(*this);
-  follow(pushes_, side_, increment, steer, part);
-}
-
-void Linearization::push_all(const Linearization& right) {
   const Model& model = context_->model;
   const bool own = &right == this;
   pushes_.resize(right.forces_.size());
@@ -191,6 +181,7 @@ void Linearization::push_all(const Linearization& right) {
       free_[i].push(model.solids[i], model, pushes_[i], side_.c);
     }
   }
+  follow(pushes_, side_, increment, steer, rough);
 }
 
 void Linearization::push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side) {

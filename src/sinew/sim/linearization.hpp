@@ -68,10 +68,12 @@ class Linearization {
   /// (12): the correction for the unbalanced forces here or, with the same factors, for those of another evaluation.
   /// Whoever steers may change the reduced solution and the forces at contacts, before volumes follow them.
   using Steer = std::function<void(Increment& increment)>;
-  void solve(Increment& increment, const Steer& steer = {}) { solve(*this, increment, steer); }
-  void solve(const Linearization& right, Increment& increment, const Steer& steer = {});
-  /// For a `steer` that polishes: without contacts it is given so much of a solution that is not.
-  void solve_roughly(Increment& increment, const Steer& steer, solve::CoupledFactor::Part part);
+  /// One that polishes may be given a `rough` solution, and so much of it; with contacts it is given a good one.
+  void solve(Increment& increment, const Steer& steer = {}, std::optional<solve::CoupledFactor::Part> rough = {}) {
+    solve(*this, increment, steer, rough);
+  }
+  void solve(const Linearization& right, Increment& increment, const Steer& steer = {},
+             std::optional<solve::CoupledFactor::Part> rough = {});
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
@@ -121,7 +123,6 @@ class Linearization {
   /// What comes after volumes have been pushed.
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
               const Steer& steer, std::optional<solve::CoupledFactor::Part> rough = {});
-  void push_all(const Linearization& right);  ///< volumes by another's forces, and side_ with it
   /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
   void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 

@@ -163,7 +163,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     stiffness = std::max(stiffness, here.stiffness());
     if (rules.inverse) {
       const auto steer = [&](Increment& step) { rules.inverse->steer(context, iterate.state, here, step); };
-      here.solve_roughly(increment, std::cref(steer), rules.inverse->part());  // (a copy would ask for memory)
+      here.solve(increment, std::cref(steer), rules.inverse->part());  // (a copy would ask for memory)
     } else {
       here.solve(increment);
     }

@@ -96,7 +96,7 @@ void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
 
 /// Left minus right side of (7) under backward Euler, without loads and multipliers, 3 x n [N]:
 ///     M (v - v_0) / h + a M v + f(x) + d(x, x_0) - M g,      v = (x - x_0) / h,
-/// with Rayleigh's a and the viscous forces d (`add_viscosity`).
+/// with Rayleigh's a and the viscous forces d (`add_viscosity`). The deformation is that of the same start and place.
 struct Residual {
   Eigen::Matrix3Xd sum;
   double scale = 0.0;  ///< [N] largest single contribution at any node: what the residual is measured against

@@ -34,7 +34,8 @@ struct Two {
   Vector first, second;
 };
 
-/// Eight records turned into registers of their numbers, by way of x x' z z' and y y' 0 0 of two records each.
+/// Eight records turned into registers of their numbers, by way of the x, the z and then the
+/// same of the second vectors of two records, and of their y.
 template <class Load>
 Two turned(const Load& row) {
   Lanes low[4], high[4];
@@ -78,13 +79,13 @@ void turned_back(const Two& v, const Take& take) {
 
 /// What the records of the nodes of one register's elements hold.
 Two gather(const double* records, const int* node) {
-  return turned([&](int i) { return load(records + 8L * node[i]); });
+  return turned([&](int i) { return load(records + kRecord * node[i]); });
 }
 
 /// Adds to them.
 void scatter(const Two& v, const int* node, double* records) {
   turned_back(v, [&](int i, const Lanes& own) {
-    double* const to = records + 8L * node[i];
+    double* const to = records + kRecord * node[i];
     store(to, load(to) + own);
   });
 }
@@ -96,14 +97,14 @@ Vector gather(const double* vectors, const int* node) {
   Vector v;
   if constexpr (kWidth < 4) {
     for (int i = 0; i < kWidth; ++i) {
-      const double* own = vectors + 8L * node[i];
+      const double* own = vectors + kRecord * node[i];
       v.x[i] = own[0];
       v.y[i] = own[1];
       v.z[i] = own[2];
     }
   } else {
     for (int i = 0; i < kWidth; i += 4) {
-      const auto at = [&](int k) -> const Four& { return four(vectors + 8L * node[i + k]); };
+      const auto at = [&](int k) -> const Four& { return four(vectors + kRecord * node[i + k]); };
       const Four ab02 = __builtin_shufflevector(at(0), at(1), 0, 4, 2, 6),
                  ab13 = __builtin_shufflevector(at(0), at(1), 1, 5, 3, 7),
                  cd02 = __builtin_shufflevector(at(2), at(3), 0, 4, 2, 6),
@@ -120,7 +121,7 @@ Vector gather(const double* vectors, const int* node) {
 void scatter(const Vector& v, const int* node, double* vectors) {
   if constexpr (kWidth < 4) {
     for (int i = 0; i < kWidth; ++i) {
-      double* own = vectors + 8L * node[i];
+      double* own = vectors + kRecord * node[i];
       own[0] += v.x[i];
       own[1] += v.y[i];
       own[2] += v.z[i];
@@ -131,7 +132,7 @@ void scatter(const Vector& v, const int* node, double* vectors) {
     const auto* z = reinterpret_cast<const Four*>(&v.z);
     for (int i = 0; i < kWidth; i += 4) {
       const FourVectors own = turned(x[i / 4], y[i / 4], z[i / 4]);
-      for (int k = 0; k < 4; ++k) add_four(vectors + 8L * node[i + k], own.of[k]);
+      for (int k = 0; k < 4; ++k) add_four(vectors + kRecord * node[i + k], own.of[k]);
     }
   }
 }
@@ -160,11 +161,11 @@ struct Part {
   const int* node(int a) const { return batch.node[a] + first; }
 };
 
-/// sum_a v_a g_a^T of both vectors in the nodes' records; the fourth gradient is minus the sum of the others.
+/// sum_a v_a g_a^T of vectors in the nodes' records; the fourth gradient is minus the sum of the others.
+#if SINEW_LANES == 8
 struct Gradient {
   Matrix first, second;
 };
-#if SINEW_LANES == 8
 Gradient gradient_of(const Part& part, const double* records) {
   const Two last = gather(records, part.node(3));
   Gradient sum = {};
@@ -188,7 +189,7 @@ Matrix second_gradient_of(const Part& part, const double* records) {
 #if SINEW_LANES == 8
   return gradient_of(part, records).second;
 #else
-  return gradient_of(part, records + 4);
+  return gradient_of(part, records + kRecord / 2);
 #endif
 }
 
@@ -270,6 +271,7 @@ Matrix find_frame(const Part& part, const Matrix& F, TetFrames& frames) {
 /// The nodes of a part's elements; of those that are missing, another one instead.
 class Nodes {
  public:
+  Nodes(const Nodes&) = delete;  // it points into itself
   Nodes(const Part& part, unsigned missing, int nowhere) {
     for (int a = 0; a < 4; ++a) {
       node_[a] = part.node(a);
@@ -285,7 +287,7 @@ class Nodes {
   int other_[4][kWidth];
 };
 
-/// Stresses times volume, by columns.
+/// First Piola and Kirchhoff's stress times volume, by columns, elastic and viscous.
 Matrix elastic_stress(const Part& part, const Matrix& F, const Matrix& R) {
   return (F - R) * (2.0 * part(part.batch.mu)) + R * (part(part.batch.lambda) * (dot(R, F) - 3.0));
 }
@@ -331,7 +333,8 @@ Matrix viscous_stress_times(const Part& part, const Matrix& F, const Matrix& mot
       scatter(last, node(3), sum);
     };
     add(elastic_stress(part, F, part(frames.R)), forces);
-    if (rate > 0.0) add(viscous_stress_times(part, F, gradient_of(part, nodes + 4), rate), forces + 4);
+    if (rate > 0.0)
+      add(viscous_stress_times(part, F, gradient_of(part, nodes + kRecord / 2), rate), forces + kRecord / 2);
   });
 }
 #endif
