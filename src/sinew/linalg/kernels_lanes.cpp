@@ -184,20 +184,19 @@ void start(Real* panel, int stride, int columns, const Block* blocks, int count,
 
 constexpr int kBlock = 8;  ///< columns of a panel that are factored together
 
-/// Columns to the right of each other on the same rows: X <- X U^-1, U[i][j] = signs[i] P[j, i].
+/// Columns to the right of each other on the same rows: X <- X L^-T, L with ones on its diagonal, times `scale`.
 template <int columns>
-void divide(Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], const Real* inverse) {
+void divide(Real* P, int stride, int rows, const Real (&L)[kBlock][kBlock], const Real* scale) {
   for (int r = 0; r < rows; r += kWidth) {
     Lanes x[columns];
 #pragma GCC unroll 8
     for (int j = 0; j < columns; ++j) {
       x[j] = load(P + static_cast<long>(j) * stride + r);
 #pragma GCC unroll 8
-      for (int i = 0; i < j; ++i) x[j] -= x[i] * U[i][j];
-      x[j] *= inverse[j];
+      for (int i = 0; i < j; ++i) x[j] -= x[i] * L[j][i];
     }
 #pragma GCC unroll 8
-    for (int j = 0; j < columns; ++j) store(P + static_cast<long>(j) * stride + r, x[j]);
+    for (int j = 0; j < columns; ++j) store(P + static_cast<long>(j) * stride + r, x[j] * scale[j]);
   }
 }
 
@@ -224,8 +223,8 @@ template <class Work>
   }
 }
 
-void divide(int columns, Real* P, int stride, int rows, const Real (&U)[kBlock][kBlock], const Real* inverse) {
-  with_count(columns, [&]<int count>() { divide<count>(P, stride, rows, U, inverse); });
+void divide(int columns, Real* P, int stride, int rows, const Real (&L)[kBlock][kBlock], const Real* scale) {
+  with_count(columns, [&]<int count>() { divide<count>(P, stride, rows, L, scale); });
 }
 
 /// What factor_profile says of a matrix; nothing of any other.
@@ -241,14 +240,16 @@ using Truth = decltype(Slice{} < Slice{});
 Slice load_slice(const Real* p) { return *reinterpret_cast<const Slice*>(p); }
 void store_slice(Real* p, const Slice& v) { *reinterpret_cast<Slice*>(p) = v; }
 
-/// A square on the diagonal, factored: D and what rows are divided by, and the inverse of its triangle.
+/// A square on the diagonal, factored as L D L^T: what rows below it are divided by, and the inverse of P.
 struct Square {
-  Real pivot[kBlock], sign[kBlock], inverse[kBlock];
-  Real U[kBlock][kBlock];     ///< [i][j]: sign i times P[j, i]
-  Real back[kBlock][kBlock];  ///< rows of P^-1
+  Real pivot[kBlock], inverse[kBlock];  ///< D and its inverse
+  Real sign[kBlock], scale[kBlock];     ///< S and S |D|^(-1/2)
+  Real L[kBlock][kBlock];               ///< by rows; of ones on its diagonal, which are not kept
+  Real back[kBlock][kBlock];            ///< rows of P^-1
 };
 
-/// Unit triangles first, number by number: no pivot waits for a root, or for a number to change its lane.
+/// The reciprocal of every second pivot is the one before over the determinant of both, and does not wait for that
+/// one's reciprocal. Nothing waits for a root, or for a number to change its lane.
 template <int count>
 bool factor_square(const Real* block, int stride, const Real* least, Square& own) {
   Real A[count][count];  // columns
@@ -257,13 +258,20 @@ bool factor_square(const Real* block, int stride, const Real* least, Square& own
 #pragma GCC unroll 8
     for (int i = j; i < count; ++i) A[j][i] = block[static_cast<long>(j) * stride + i];
   }
-  Real L[count][count];  // of ones on its diagonal
+  Real L[count][count];
+  double both = 0.0;  // floats, too, have room for it
 #pragma GCC unroll 8
   for (int j = 0; j < count; ++j) {
-    Real d = A[j][j];
-    if (least && __builtin_fabs(d) < __builtin_fabs(least[j])) d = least[j];
-    own.pivot[j] = d;
-    const Real by = Real(1) / d;
+    Real &d = own.pivot[j], &by = own.inverse[j];
+    if (j % 2 == 1 && !least) {
+      by = static_cast<Real>(own.pivot[j - 1] / both);
+      d = static_cast<Real>(both * own.inverse[j - 1]);
+    } else {
+      d = least && __builtin_fabs(A[j][j]) < __builtin_fabs(least[j]) ? least[j] : A[j][j];
+      by = Real(1) / d;
+      if (j + 1 < count)
+        both = static_cast<double>(d) * A[j + 1][j + 1] - static_cast<double>(A[j][j + 1]) * A[j][j + 1];
+    }
 #pragma GCC unroll 8
     for (int k = j + 1; k < count; ++k) {
       L[k][j] = A[j][k] * by;
@@ -273,16 +281,15 @@ bool factor_square(const Real* block, int stride, const Real* least, Square& own
   }
   bool good = true;
   for (int j = 0; j < count; ++j) {
-    const Real d = own.pivot[j], size = d < Real(0) ? -d : d;
-    good &= size > Real(0) && size <= __DBL_MAX__;
-    own.sign[j] = d < Real(0) ? -Real(1) : Real(1);
-    own.inverse[j] = own.sign[j] / static_cast<Real>(__builtin_sqrt(size));
+    const double d = own.pivot[j], size = __builtin_fabs(d), by = __builtin_fabs(own.inverse[j]);
+    good &= size > 0.0 && size <= __DBL_MAX__ && by <= __DBL_MAX__;
+    own.sign[j] = d < 0.0 ? -Real(1) : Real(1);
+    own.scale[j] = own.sign[j] * static_cast<Real>(__builtin_sqrt(by));
   }
 #pragma GCC unroll 8
-  for (int j = 0; j < count; ++j) {
-    const Real by = own.sign[j] * own.inverse[j];
+  for (int i = 0; i < count; ++i) {
 #pragma GCC unroll 8
-    for (int i = j + 1; i < count; ++i) own.U[j][i] = A[j][i] * by;
+    for (int j = 0; j < i; ++j) own.L[i][j] = L[i][j];
   }
   Slice Y[count][kSlices];  // rows of L^-1
 #pragma GCC unroll 8
@@ -294,7 +301,7 @@ bool factor_square(const Real* block, int stride, const Real* least, Square& own
     for (int j = 0; j < i; ++j) {
       for (int p = 0; p <= j / kSlice; ++p) Y[i][p] -= Y[j][p] * L[i][j];
     }
-    const Real by = own.sign[i] * own.inverse[i];
+    const Real by = own.sign[i] * own.scale[i];
     for (int p = 0; p <= i / kSlice; ++p) store_slice(own.back[i] + p * kSlice, Y[i][p] * by);
   }
   return good;
@@ -337,7 +344,7 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
         if (!begun(from)) continue;
       }
       const int own = (end < rows ? end : rows) - from;
-      divide(count, block + from, stride, (own + kWidth - 1) / kWidth * kWidth, square.U, square.inverse);
+      divide(count, block + from, stride, (own + kWidth - 1) / kWidth * kWidth, square.L, square.scale);
     }
     for (int j = 0; j < count; ++j) {
       for (int i = 0; i <= j; ++i) {
