@@ -71,7 +71,7 @@ TEST_P(EveryTetKernel, GivesForcesAndTangentsOfTheElements) {
         TetStiffness definite, exact;
         const unsigned all = (1U << batch.count) - 1U;
         Records forces = no_forces(body);
-        own->add_forces(batch, nodes.data(), rate, body.nodes(), frames, forces.data());
+        own->add_forces(&batch, 1, nodes.data(), rate, body.nodes(), &frames, forces.data());
         EXPECT_EQ(frames.missing & all, 0U);
         EXPECT_EQ(forces.row(3).norm(), 0.0);
         EXPECT_EQ(forces.row(7).norm(), 0.0);
@@ -117,7 +117,7 @@ TEST_P(EveryTetKernel, LeavesOutWhatIsFlatOrInsideOut) {
   x.col(4 * 5) += 3.0 * (x.col(4 * 5 + 1) - x.col(4 * 5));                      // inside out
   TetFrames frames;
   Records forces = no_forces(body);
-  own->add_forces(body.batches[0], records(x, x).data(), 0.0, body.nodes(), frames, forces.data());
+  own->add_forces(body.batches.data(), 1, records(x, x).data(), 0.0, body.nodes(), &frames, forces.data());
   EXPECT_EQ(frames.missing, 1U << 2 | 1U << 5);
   for (const int e : {2, 5}) EXPECT_EQ(forces.middleCols<4>(4 * e).norm(), 0.0) << e;
   EXPECT_GT(forces.middleCols<4>(4 * 3).norm(), 0.0);

@@ -232,9 +232,8 @@ void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
     nodes.col(node).segment<3>(kRecord / 2) =
         start.rate > 0.0 ? Vec3(x.col(node) - start.x.col(node)) : Vec3(Vec3::Zero());
   }
-  for (std::size_t k = 0; k < body.batches.size(); ++k)
-    tet_kernels().add_forces(body.batches[k], deformation.nodes.data(), start.rate, n, deformation.frames[k],
-                             deformation.forces.data());
+  tet_kernels().add_forces(body.batches.data(), static_cast<int>(body.batches.size()), deformation.nodes.data(),
+                           start.rate, n, deformation.frames.data(), deformation.forces.data());
 }
 
 Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {

@@ -44,11 +44,11 @@ inline constexpr int kRecord = 8;
 /// One set of kernels (linalg/kernels). `nodes`: records of x and x - x_0 [m].
 struct TetKernels {
   const char* name;
-  /// Finds the frames, and adds to the records of the nodes' forces [N], elastic and viscous ones,
+  /// Finds the frames of `count` batches, and adds to the records of the nodes' forces [N], elastic and viscous ones,
   /// 2 mu (F - R) + lambda tr(R^T F - 1) R and its viscous counterpart, times gradients; those of missing elements go
   /// to the node `nowhere`. `rate` [1/s], 0: no viscous forces.
-  void (*add_forces)(const TetBatch& batch, const double* nodes, double rate, int nowhere, TetFrames& frames,
-                     double* forces);
+  void (*add_forces)(const TetBatch* batches, int count, const double* nodes, double rate, int nowhere,
+                     TetFrames* frames, double* forces);
   /// The definite tangent: that of linear elasticity in the frame R, and of the viscous forces without their stress.
   /// `exact`: the derivative of the forces. Both give nothing of use for elements that are missing.
   void (*definite)(const TetBatch& batch, const TetFrames& frames, double rate, TetStiffness& stiffness);

@@ -218,28 +218,50 @@ bool all_true(const Some<width>& v) {
   }
 }
 
-/// The rotation of the polar decomposition, by Newton's iteration for R^T R = 1 without scaling; false where it has not
-/// converged or would end at a mirror.
-Matrix rotation(const Matrix& F, Truth& found) {
+/// The rotations of polar decompositions, by Newton's iteration for R^T R = 1 without scaling; false where one has not
+/// converged or would end at a mirror. Every turn waits for itself, so several go by turns.
+template <int count>
+void rotations(const Matrix (&F)[count], Matrix (&X)[count], Truth (&found)[count]) {
   constexpr int kMost = 8;
-  Matrix X = F;
-  found = dot(F.c0, cross(F.c1, F.c2)) > 1e-2;
-  for (int i = 0; i < kMost; ++i) {
-    const Matrix C = {cross(X.c1, X.c2), cross(X.c2, X.c0), cross(X.c0, X.c1)};
-    const Matrix next = X * (Lanes{} + 0.5) + C * (0.5 / dot(X.c0, C.c0));
-    const Matrix step = next - X;
-    const Truth small = dot(step, step) < 1e-16;  // the error left is about the step's square
-    X = next;
-    if (all_true<kWidth>(small | (found == 0))) break;
-    if (i + 1 == kMost) found &= small;
+#pragma GCC unroll 2
+  for (int p = 0; p < count; ++p) {
+    X[p] = F[p];
+    found[p] = dot(F[p].c0, cross(F[p].c1, F[p].c2)) > 1e-2;
   }
-  return X;
+  for (int i = 0; i < kMost; ++i) {
+    Truth done = ~Truth{};
+#pragma GCC unroll 2
+    for (int p = 0; p < count; ++p) {
+      Matrix& own = X[p];
+      const Matrix C = {cross(own.c1, own.c2), cross(own.c2, own.c0), cross(own.c0, own.c1)};
+      const Matrix next = own * (Lanes{} + 0.5) + C * (0.5 / dot(own.c0, C.c0));
+      const Matrix step = next - own;
+      const Truth small = dot(step, step) < 1e-16;  // the error left is about the step's square
+      own = next;
+      done &= small | (found[p] == 0);
+      if (i + 1 == kMost) found[p] &= small;
+    }
+    if (all_true<kWidth>(done)) break;
+  }
 }
 
 /// A symmetric matrix.
 struct Symmetric {
   Lanes xx, yy, zz, xy, yz, zx;
 };
+Symmetric operator+(const Symmetric& A, const Symmetric& B) {
+  return {A.xx + B.xx, A.yy + B.yy, A.zz + B.zz, A.xy + B.xy, A.yz + B.yz, A.zx + B.zx};
+}
+Symmetric operator*(const Symmetric& A, const Lanes& s) {
+  return {A.xx * s, A.yy * s, A.zz * s, A.xy * s, A.yz * s, A.zx * s};
+}
+/// u v^T where that is symmetric.
+Symmetric symmetric_outer(const Vector& u, const Vector& v) {
+  return {u.x * v.x, u.y * v.y, u.z * v.z, u.x * v.y, u.y * v.z, u.z * v.x};
+}
+Matrix whole(const Symmetric& A) { return {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}}; }
+/// Of a matrix that is, but for rounding.
+Symmetric half(const Matrix& A) { return {A.c0.x, A.c1.y, A.c2.z, A.c0.y, A.c1.z, A.c0.z}; }
 Vector operator*(const Symmetric& A, const Vector& v) {
   return {A.xx * v.x + A.xy * v.y + A.zx * v.z, A.xy * v.x + A.yy * v.y + A.yz * v.z,
           A.zx * v.x + A.yz * v.y + A.zz * v.z};
@@ -258,14 +280,17 @@ Symmetric viscous_stress(const Part& part, const Matrix& F, const Matrix& dF, do
           mu * (dot(middle.c2, dF.c0) + dot(middle.c0, dF.c2))};
 }
 
-/// Finds R, and keeps it with F.
-Matrix find_frame(const Part& part, const Matrix& F, TetFrames& frames) {
-  Truth found;
-  const Matrix R = rotation(F, found);
-  part.put(R, frames.R);
-  part.put(F, frames.F);
-  frames.missing |= bits(found == 0, part.first);
-  return R;
+/// Finds rotations, and keeps them with F.
+template <int count>
+void find_frames(const Part (&part)[count], const Matrix (&F)[count], Matrix (&R)[count], TetFrames* const* frames) {
+  Truth found[count];
+  rotations(F, R, found);
+#pragma GCC unroll 2
+  for (int p = 0; p < count; ++p) {
+    part[p].put(R[p], frames[p]->R);
+    part[p].put(F[p], frames[p]->F);
+    frames[p]->missing |= bits(found[p] == 0, part[p].first);
+  }
 }
 
 /// The nodes of a part's elements; of those that are missing, another one instead.
@@ -296,48 +321,76 @@ Matrix viscous_stress_times(const Part& part, const Matrix& F, const Matrix& mot
   return {F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}};
 }
 
+/// Adds a part's forces, elastic or viscous ones.
 #if SINEW_LANES == 8
-[[gnu::flatten]] void add_forces(const TetBatch& batch, const double* nodes, double rate, int nowhere,
-                                 TetFrames& frames, double* forces) {
-  frames.missing = 0;
-  const Part part{batch, 0};
-  const auto [F, dF] = gradient_of(part, nodes);
-  const Matrix R = find_frame(part, F, frames);
-  const Matrix elastic = elastic_stress(part, F, R),
-               viscous = rate > 0.0 ? viscous_stress_times(part, F, dF, rate) : Matrix{};
-  const Nodes node(part, frames.missing, nowhere);
-  Two last = {};
-  for (int a = 0; a < 3; ++a) {
-    const Two own = {elastic * part.gradient(a), viscous * part.gradient(a)};
-    scatter(own, node(a), forces);
-    last = {last.first - own.first, last.second - own.second};
+template <int count>
+void add_forces_of(const Part (&part)[count], const double* nodes, double rate, int nowhere, TetFrames* const* frames,
+                   double* forces) {
+  Matrix F[count], dF[count], R[count];
+#pragma GCC unroll 2
+  for (int p = 0; p < count; ++p) {
+    const Gradient own = gradient_of(part[p], nodes);
+    F[p] = own.first;
+    dF[p] = own.second;
   }
-  scatter(last, node(3), forces);
+  find_frames(part, F, R, frames);
+#pragma GCC unroll 2
+  for (int p = 0; p < count; ++p) {
+    const Matrix elastic = elastic_stress(part[p], F[p], R[p]),
+                 viscous = rate > 0.0 ? viscous_stress_times(part[p], F[p], dF[p], rate) : Matrix{};
+    const Nodes node(part[p], frames[p]->missing, nowhere);
+    Two last = {};
+    for (int a = 0; a < 3; ++a) {
+      const Two own = {elastic * part[p].gradient(a), viscous * part[p].gradient(a)};
+      scatter(own, node(a), forces);
+      last = {last.first - own.first, last.second - own.second};
+    }
+    scatter(last, node(3), forces);
+  }
 }
 #else
-// All rotations first: their iterations wait for themselves, and pass by each other.
-[[gnu::flatten]] void add_forces(const TetBatch& batch, const double* nodes, double rate, int nowhere,
-                                 TetFrames& frames, double* forces) {
-  frames.missing = 0;
-  each_part(batch, [&](const Part& part) { find_frame(part, gradient_of(part, nodes), frames); });
-  each_part(batch, [&](const Part& part) {
-    const Matrix F = part(frames.F);
-    const Nodes node(part, frames.missing, nowhere);
+template <int count>
+void add_forces_of(const Part (&part)[count], const double* nodes, double rate, int nowhere, TetFrames* const* frames,
+                   double* forces) {
+  Matrix F[count], R[count];
+#pragma GCC unroll 2
+  for (int p = 0; p < count; ++p) F[p] = gradient_of(part[p], nodes);
+  find_frames(part, F, R, frames);
+#pragma GCC unroll 2
+  for (int p = 0; p < count; ++p) {
+    const Nodes node(part[p], frames[p]->missing, nowhere);
     const auto add = [&](const Matrix& stress, double* sum) {
       Vector last = {};
       for (int a = 0; a < 3; ++a) {
-        const Vector own = stress * part.gradient(a);
+        const Vector own = stress * part[p].gradient(a);
         scatter(own, node(a), sum);
         last = last - own;
       }
       scatter(last, node(3), sum);
     };
-    add(elastic_stress(part, F, part(frames.R)), forces);
+    add(elastic_stress(part[p], F[p], R[p]), forces);
     if (rate > 0.0)
-      add(viscous_stress_times(part, F, gradient_of(part, nodes + kRecord / 2), rate), forces + kRecord / 2);
-  });
+      add(viscous_stress_times(part[p], F[p], gradient_of(part[p], nodes + kRecord / 2), rate), forces + kRecord / 2);
+  }
 }
 #endif
+
+[[gnu::flatten]] void add_forces(const TetBatch* batches, int count, const double* nodes, double rate, int nowhere,
+                                 TetFrames* frames, double* forces) {
+  for (int k = 0; k < count; ++k) frames[k].missing = 0;
+  const auto part = [batches](int p) { return Part{batches[p * kWidth / kBatch], p * kWidth % kBatch}; };
+  const auto frame = [frames](int p) { return frames + p * kWidth / kBatch; };
+  const int parts = count * kBatch / kWidth;
+  int p = 0;
+  for (; p + 1 < parts; p += 2) {
+    TetFrames* const own[] = {frame(p), frame(p + 1)};
+    add_forces_of<2>({part(p), part(p + 1)}, nodes, rate, nowhere, own, forces);
+  }
+  if (p < parts) {
+    TetFrames* const own[] = {frame(p)};
+    add_forces_of<1>({part(p)}, nodes, rate, nowhere, own, forces);
+  }
+}
 
 /// A part's gradients, and what a matrix makes of them.
 struct Gradients {
@@ -364,29 +417,25 @@ Matrix transposed(const Matrix& A) {
   return {{A.c0.x, A.c1.x, A.c2.x}, {A.c0.y, A.c1.y, A.c2.y}, {A.c0.z, A.c1.z, A.c2.z}};
 }
 
-/// Puts all blocks, given those `block(a, b)` of nodes 2 >= a >= b: no force comes from moving all four nodes alike.
-template <class Block>
-void put_blocks(const Part& part, TetStiffness& stiffness, const Block& block) {
-  const Matrix none = {};
-  const auto last = [&none](const Matrix& A, const Matrix& B, const Matrix& C) { return none - (A + B + C); };
-  const Matrix K00 = block(0, 0), K10 = block(1, 0), K20 = block(2, 0);
+/// Puts all blocks, given those of nodes 2 >= a >= b, `block(a, b)` and `diagonal(a)`: no force comes from moving all
+/// four nodes alike.
+template <class Diagonal, class Block>
+void put_blocks(const Part& part, TetStiffness& stiffness, const Diagonal& diagonal, const Block& block) {
+  const auto last = [](const auto& A, const auto& B, const auto& C) { return (A + B + C) * (Lanes{} - 1.0); };
+  const Matrix K00 = whole(diagonal(0)), K10 = block(1, 0), K20 = block(2, 0);
   put(part, stiffness, 0, 0, K00);
   put(part, stiffness, 1, 0, K10);
   put(part, stiffness, 2, 0, K20);
-  const Matrix K30 = last(K00, K10, K20), K11 = block(1, 1), K21 = block(2, 1);
+  const Matrix K30 = last(K00, K10, K20), K11 = whole(diagonal(1)), K21 = block(2, 1);
   put(part, stiffness, 3, 0, K30);
   put(part, stiffness, 1, 1, K11);
   put(part, stiffness, 2, 1, K21);
-  const Matrix K31 = last(transposed(K10), K11, K21), K22 = block(2, 2);
+  const Matrix K31 = last(transposed(K10), K11, K21), K22 = whole(diagonal(2));
   put(part, stiffness, 3, 1, K31);
   put(part, stiffness, 2, 2, K22);
   const Matrix K32 = last(transposed(K20), transposed(K21), K22);
   put(part, stiffness, 3, 2, K32);
-  put(part, stiffness, 3, 3, last(K30, K31, K32));
-}
-
-Matrix operator*(const Symmetric& A, const Lanes& s) {
-  return {{A.xx * s, A.xy * s, A.zx * s}, {A.xy * s, A.yy * s, A.yz * s}, {A.zx * s, A.yz * s, A.zz * s}};
+  put(part, stiffness, 3, 3, whole(last(half(K30), half(K31), half(K32))));
 }
 
 /// mu A g_b (A g_a)^T + lambda A g_a (A g_b)^T: of linear elasticity, which has mu g_a . g_b besides, with A = R; of
@@ -398,6 +447,7 @@ struct Projected {
   Matrix operator()(int a, int b) const {
     return outer(moved.of[b], moved.of[a] * mu) + outer(moved.of[a] * lambda, moved.of[b]);
   }
+  Symmetric operator()(int a) const { return symmetric_outer(moved.of[a], moved.of[a] * (mu + lambda)); }
 };
 
 Projected viscosity(const Part& part, const Matrix& F, const Gradients& g, double rate) {
@@ -417,8 +467,9 @@ Symmetric square(const Matrix& F, const Lanes& mu, const Lanes& s) {
     const Projected elastic = {part(batch.mu), part(batch.lambda), part(frames.R) * g};
     const Projected viscous = viscosity(part, F, g, rate);
     const Symmetric common = square(F, viscous.mu, elastic.mu);
-    put_blocks(part, stiffness,
-               [&](int a, int b) { return common * dot(g.of[a], g.of[b]) + elastic(a, b) + viscous(a, b); });
+    put_blocks(
+        part, stiffness, [&](int a) { return common * dot(g.of[a], g.of[a]) + elastic(a) + viscous(a); },
+        [&](int a, int b) { return whole(common * dot(g.of[a], g.of[b])) + elastic(a, b) + viscous(a, b); });
   });
 }
 
@@ -453,16 +504,18 @@ Symmetric inverse(const Symmetric& A) {
     const Projected viscous = viscosity(part, F, g, rate);
     const Symmetric common = square(F, viscous.mu, mu);
     const Symmetric S = rate > 0.0 ? viscous_stress(part, F, second_gradient_of(part, nodes), rate) : Symmetric{};
-    put_blocks(part, stiffness, [&](int a, int b) {
+    const auto block = [&](int a, int b) {
       const Vector& ta = t.of[a];
-      Matrix K = common * dot(g.of[a], g.of[b]) + outer(ta * lambda, t.of[b]) + viscous(a, b) +
+      Matrix K = whole(common * dot(g.of[a], g.of[b])) + outer(ta * lambda, t.of[b]) + viscous(a, b) +
                  Matrix{cross(turned[b].c0, ta), cross(turned[b].c1, ta), cross(turned[b].c2, ta)};
       const Lanes stress = dot(g.of[a], S * g.of[b]);
       K.c0.x += stress;
       K.c1.y += stress;
       K.c2.z += stress;
       return K;
-    });
+    };
+    put_blocks(
+        part, stiffness, [&](int a) { return half(block(a, a)); }, block);
   });
 }
 
