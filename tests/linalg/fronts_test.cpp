@@ -172,6 +172,22 @@ TEST_P(EveryKernel, GivesWhatTheOthersGive) {
   EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
 }
 
+TEST_P(EveryKernel, TellsWhereSquaresHaveNoRoom) {
+  const Bar bar = random_bar(6, 20, 0.0, 5);
+  const auto plan = SparseFactor::make_plan(bar.A, bar.H);
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(bar.A.cols());
+  for (const double scale : {1e-140, 1e140}) {
+    SparseFactor factor(plan, *kernels(GetParam()));
+    ASSERT_TRUE(factor.factor(Matrix(scale * bar.A), bar.H)) << scale;
+    const Eigen::VectorXd x = factor.solve(b);
+    EXPECT_LT((scale * dense(bar.A) * x - b).norm(), 1e-11 * b.norm()) << scale;
+  }
+  for (const double scale : {1e-170, 1e-320, 1e170, 1e300}) {
+    SparseFactor factor(plan, *kernels(GetParam()));
+    EXPECT_FALSE(factor.factor(Matrix(scale * bar.A), bar.H)) << scale;
+  }
+}
+
 TEST_P(EveryKernel, SinglePrecisionIsRefinedToDouble) {
   for (const int length : {2, 3, 9, 25}) {
     const Bar bar = random_bar(length, 3 * length, 0.0, static_cast<unsigned>(length));
