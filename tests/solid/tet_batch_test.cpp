@@ -123,6 +123,25 @@ TEST_P(EveryTetKernel, LeavesOutWhatIsFlatOrInsideOut) {
   EXPECT_GT(forces.middleCols<4>(4 * 3).norm(), 0.0);
 }
 
+TEST_P(EveryTetKernel, GivesTheSameOfBatchesTogetherAsOfEach) {
+  const Body body = sample_body();
+  Eigen::Matrix3Xd x = deformed(body, 0.05);
+  for (const int e : {2, 9}) x.col(4 * e) += 3.0 * (x.col(4 * e + 1) - x.col(4 * e));  // inside out
+  const Records nodes = records(x, x - body.rest);
+  const int count = static_cast<int>(body.batches.size());
+  ASSERT_EQ(count, 2);
+  std::vector<TetFrames> together(2), each(2);
+  Records all = no_forces(body), sum = no_forces(body);
+  own->add_forces(body.batches.data(), count, nodes.data(), 100.0, body.nodes(), together.data(), all.data());
+  for (int k = 0; k < count; ++k)
+    own->add_forces(&body.batches[k], 1, nodes.data(), 100.0, body.nodes(), &each[k], sum.data());
+  for (int k = 0; k < count; ++k) EXPECT_EQ(together[k].missing, each[k].missing) << k;
+  EXPECT_EQ(each[0].missing, 1U << 2);
+  EXPECT_EQ(each[1].missing & 3U, 1U << 1);
+  const auto of_nodes = [&](const Records& forces) { return forces.leftCols(body.nodes()); };
+  EXPECT_LT((of_nodes(all) - of_nodes(sum)).norm(), 1e-13 * of_nodes(sum).norm());
+}
+
 INSTANTIATE_TEST_SUITE_P(TetBatch, EveryTetKernel, testing::Values("portable", "avx2", "avx512"),
                          [](const auto& tested) { return std::string(tested.param); });
 

@@ -321,7 +321,7 @@ Matrix viscous_stress_times(const Part& part, const Matrix& F, const Matrix& mot
   return {F * Vector{S.xx, S.xy, S.zx}, F * Vector{S.xy, S.yy, S.yz}, F * Vector{S.zx, S.yz, S.zz}};
 }
 
-/// Adds a part's forces, elastic or viscous ones.
+/// Finds frames and adds forces of some parts.
 #if SINEW_LANES == 8
 template <int count>
 void add_forces_of(const Part (&part)[count], const double* nodes, double rate, int nowhere, TetFrames* const* frames,
