@@ -34,8 +34,8 @@ struct Two {
   Vector first, second;
 };
 
-/// Eight records turned into registers of their numbers, by way of the x, the z and then the
-/// same of the second vectors of two records, and of their y.
+/// Eight records turned into registers of their numbers, by way of the x and z of both vectors of two records, and of
+/// their y.
 template <class Load>
 Two turned(const Load& row) {
   Lanes low[4], high[4];
