@@ -379,7 +379,7 @@ void ChainFactor::condense_upper(const std::vector<Attachment>& attachments, Con
         const Vector<M> right = S * b;
         for (int c = 0; c < 6; ++c)
           moving(kWrenches * c + (l + shift) % kWrenches, (l + shift) / kWrenches) = arrived[c];
-        for (int i = own; i < beyond; ++i) turned_W(l, i) = alpha.col(i).dot(arrived) + attachments[i].b.dot(right);
+        for (int i = own; i <= l; ++i) turned_W(l, i) = alpha.col(i).dot(arrived) + attachments[i].b.dot(right);
       }
     });
     beyond = own;

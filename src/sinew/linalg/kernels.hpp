@@ -35,9 +35,9 @@ struct KernelsOf {
   void (*start)(Real* panel, int stride, int columns, const Block* blocks, int count, const double* numbers);
 
   /// Factors a panel of `columns` columns, P <- L |D|^(1/2) where P = L D [its upper part]^T and L has ones on its
-  /// diagonal. The squares of kLanes columns on P's diagonal are kept inverted, with the transposed inverse above the
-  /// diagonal; farther above it anything is left. False where a pivot, an entry of D, or a product of
-  /// two, in doubles, is zero or not finite.
+  /// diagonal. The squares of kLanes columns on P's diagonal give their places to their transposed inverses, upper
+  /// triangles; farther above the diagonal anything is left. False where a pivot, an entry of D, or a product of two,
+  /// in doubles, is zero or not finite.
   bool (*factor)(Real* panel, int stride, int columns, int height, Real* pivots, Real* signs);
 
   /// The same of a square one whose rows begin with zeros, which stay: `begin` has the first column that is not zero of

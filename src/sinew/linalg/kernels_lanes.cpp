@@ -240,6 +240,13 @@ using Truth = decltype(Slice{} < Slice{});
 Slice load_slice(const Real* p) { return *reinterpret_cast<const Slice*>(p); }
 void store_slice(Real* p, const Slice& v) { *reinterpret_cast<Slice*>(p) = v; }
 
+/// Numbers of the lanes of slice p.
+Truth numbered(int p) {
+  Truth lane;
+  for (int i = 0; i < kSlice; ++i) lane[i] = p * kSlice + i;
+  return lane;
+}
+
 /// A square on the diagonal, factored as L D L^T: what rows below it are divided by, and the inverse of P.
 struct Square {
   Real pivot[kBlock], inverse[kBlock];  ///< D and its inverse
@@ -302,7 +309,8 @@ bool factor_square(const Real* block, int stride, const Real* least, Square& own
       for (int p = 0; p <= j / kSlice; ++p) Y[i][p] -= Y[j][p] * L[i][j];
     }
     const Real by = own.sign[i] * own.scale[i];
-    for (int p = 0; p <= i / kSlice; ++p) store_slice(own.back[i] + p * kSlice, Y[i][p] * by);
+#pragma GCC unroll 4
+    for (int p = 0; p < kSlices; ++p) store_slice(own.back[i] + p * kSlice, Y[i][p] * by);
   }
   return good;
 }
@@ -347,9 +355,11 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
       divide(count, block + from, stride, (own + kWidth - 1) / kWidth * kWidth, square.L, square.scale);
     }
     for (int j = 0; j < count; ++j) {
-      for (int i = 0; i <= j; ++i) {
-        block[static_cast<long>(j) * stride + i] = square.back[j][i];
-        block[static_cast<long>(i) * stride + j] = square.back[j][i];
+#pragma GCC unroll 4
+      for (int p = 0; p < kSlices; ++p) {
+        Real* const to = block + static_cast<long>(j) * stride + p * kSlice;
+        const Slice own = load_slice(square.back[j] + p * kSlice);
+        store_slice(to, count == kBlock || numbered(p) < count ? own : load_slice(to));
       }
     }
   }
@@ -424,22 +434,26 @@ void multiply(const Real* A, int stride, int height, int columns, const Real* x,
   for (; at < height; at += kWidth) rows.template operator()<1>(at);
 }
 
-Real total(const Lanes& v) {
+template <class Register>
+Real total(const Register& v) {
+  constexpr int kNumbers = sizeof(Register) / sizeof(Real);
   Real sum = v[0];
-  for (int i = 1; i < kWidth; ++i) sum += v[i];
+  for (int i = 1; i < kNumbers; ++i) sum += v[i];
   return sum;
 }
 
 /// The sums of four registers' lanes, added by halves.
-void totals(const Lanes (&v)[4], Real* sums) {
-  if constexpr (kWidth < 4) {
+template <class Register>
+void totals(const Register (&v)[4], Real* sums) {
+  constexpr int kNumbers = sizeof(Register) / sizeof(Real);
+  if constexpr (kNumbers < 4) {
     for (int k = 0; k < 4; ++k) sums[k] = total(v[k]);
   } else {
     Four part[4];
     for (int k = 0; k < 4; ++k) {
       const Four* own = reinterpret_cast<const Four*>(&v[k]);
       part[k] = own[0];
-      for (int i = 1; i < kWidth / 4; ++i) part[k] += own[i];
+      for (int i = 1; i < kNumbers / 4; ++i) part[k] += own[i];
     }
     const Four low =
         __builtin_shufflevector(part[0], part[1], 0, 4, 2, 6) + __builtin_shufflevector(part[0], part[1], 1, 5, 3, 7);
@@ -482,21 +496,30 @@ void multiply_transposed(const Real* A, int stride, int height, int columns, con
   for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
 }
 
-/// x <- P^-1 x, or P^-T x, with a square on the diagonal: its columns hold P^-1 below the diagonal, P^-T above it.
+/// x <- P^-1 x, or P^-T x, with a square on the diagonal, whose columns are the rows of P^-1; x has kBlock numbers.
 template <bool transposed>
 void divide_by_square(const Real* block, int stride, int count, Real* x) {
   Real out[kBlock];
-  Truth lane;
-  for (int i = 0; i < kSlice; ++i) lane[i] = i;
-  Slice sum[kSlices] = {};
-  for (int j = 0; j < count; ++j) {
+  if constexpr (transposed) {
+    Slice sum[kSlices] = {};
+    for (int j = 0; j < count; ++j) {
 #pragma GCC unroll 4
-    for (int p = 0; p < kSlices; ++p) {
-      const Slice own = load_slice(block + static_cast<long>(j) * stride + p * kSlice) * x[j];
-      sum[p] += (transposed ? lane + p * kSlice <= j : lane + p * kSlice >= j) ? own : Slice{};
+      for (int p = 0; p < kSlices; ++p) sum[p] += load_slice(block + static_cast<long>(j) * stride + p * kSlice) * x[j];
+    }
+    for (int p = 0; p < kSlices; ++p) store_slice(out + p * kSlice, sum[p]);
+  } else {
+    Slice own[kSlices];  // beside the square is what is below it
+    for (int p = 0; p < kSlices; ++p) own[p] = numbered(p) < count ? load_slice(x + p * kSlice) : Slice{};
+    for (int first = 0; first < count; first += 4) {
+      Slice sum[4] = {};
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) {
+        const Real* const column = block + static_cast<long>(first + k) * stride;
+        for (int p = 0; first + k < count && p < kSlices; ++p) sum[k] += load_slice(column + p * kSlice) * own[p];
+      }
+      totals(sum, out + first);
     }
   }
-  for (int p = 0; p < kSlices; ++p) store_slice(out + p * kSlice, sum[p]);
   for (int i = 0; i < count; ++i) x[i] = out[i];
 }
 
