@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace sinew::solve {
 
@@ -113,14 +112,6 @@ Vec6 pull_of(const ChainPart& part, const Eigen::VectorXd& y, Eigen::VectorXd& o
   return wrench;
 }
 
-/// Visits the unknowns of the border that a chain ties to each other.
-template <class Visit>
-void each_tied(const ChainPart& part, const Visit& visit) {
-  for (Eigen::Index i = 0; i < part.base.cols(); ++i) visit(part.first_base + static_cast<int>(i));
-  for (const int i : part.at) visit(i);
-  for (const int i : part.whole_at) visit(i);
-}
-
 bool finite(const CoupledSolution& solution) {
   return solution.dz.allFinite() && solution.dlambda.allFinite() &&
          std::all_of(solution.dq.begin(), solution.dq.end(), [](const auto& own) { return own.allFinite(); });
@@ -202,67 +193,14 @@ void CoupledFactor::factor() {
   if (!symmetric || !factor_symmetric()) factor_general(!chains_);
 }
 
-/// Rows that feel a compliance have negative pivots, what they hold then positive ones; the rest are rows again. In
-/// this order a row of the matrix begins with the first unknown that anything ties it to.
-void CoupledFactor::place() {
-  const CoupledProblem& problem = *problem_;
-  const int nz = unknowns_of(problem), size = border_size(problem);
-  constexpr int kNone = -1, kYields = -2;
-  place_.assign(static_cast<std::size_t>(size), kNone);
-  for (const VolumePart& volume : problem.volumes) {
-    for (const int row : volume.at) place_[nz + row] = kYields;
-  }
-  for (const auto& entry : problem.W) place_[nz + entry.row] = kYields;
-  for (const ChainPart& part : problem.chains) {
-    each_tied(part, [&](int i) {
-      if (i >= nz) place_[i] = kYields;
-    });
-  }
-  int next = 0;  // a volume's rows as they come, so that its W can be copied
-  for (const VolumePart& volume : problem.volumes) {
-    for (const int row : volume.at) {
-      if (place_[nz + row] == kYields) place_[nz + row] = next++;
-    }
-  }
-  for (int i = nz; i < size; ++i) {
-    if (place_[i] == kYields) place_[i] = next++;
-  }
-  yielding_ = next;
-  for (int i = 0; i < nz; ++i) place_[i] = next++;
-  for (int i = nz; i < size; ++i) {
-    if (place_[i] == kNone) place_[i] = next++;
-  }
-  begin_.resize(static_cast<std::size_t>(size));
-  std::iota(begin_.begin(), begin_.end(), 0);
-  const auto tie = [this](int i, int j) {
-    const auto [first, last] = std::minmax(place_[i], place_[j]);
-    begin_[last] = std::min(begin_[last], first);
-  };
-  for (const auto& entry : problem.B) tie(entry.row, entry.column);
-  for (const auto& entry : problem.G) tie(nz + entry.row, entry.column);
-  for (const auto& entry : problem.W) tie(nz + entry.row, nz + entry.column);
-  for (const VolumePart& volume : problem.volumes) {
-    if (volume.at.empty()) continue;
-    const int first = *std::min_element(volume.at.begin(), volume.at.end(),
-                                        [&](int a, int b) { return place_[nz + a] < place_[nz + b]; });
-    for (const int row : volume.at) tie(nz + first, nz + row);
-  }
-  for (const ChainPart& part : problem.chains) {
-    int first = -1;
-    each_tied(part, [&](int i) {
-      if (first < 0 || place_[i] < place_[first]) first = i;
-    });
-    each_tied(part, [&](int i) { tie(first, i); });
-  }
-}
-
 /// Weights of the border's unknowns, so that rows of different units are judged alike, by Ruiz' sweeps over its few
 /// entries and its diagonal, which bounds what is dense.
 void CoupledFactor::weigh() {
   const CoupledProblem& problem = *problem_;
   const int nz = unknowns_of(problem), size = border_size(problem);
   diagonal_.resize(size);
-  for (int i = 0; i < size; ++i) diagonal_[i] = std::abs(symmetric_.column(place_[i])[place_[i]]);
+  const std::vector<int>& place = order_.place();
+  for (int i = 0; i < size; ++i) diagonal_[i] = std::abs(symmetric_.column(place[i])[place[i]]);
   double most = 0.0;  // but for rows that hold nothing now
   for (const VolumePart& volume : problem.volumes) {
     for (Eigen::Index i = 0; i < volume.W.rows(); ++i) {
@@ -283,26 +221,27 @@ void CoupledFactor::weigh() {
     };
     for (const auto& [row, column, value] : problem.G) meet(nz + row, column, value);
     for (const auto& [row, column, value] : problem.B) meet(row, column, value);
-    scale_.array() /= (largest_.array() > 0.0).select(largest_.array(), 1.0).sqrt();
+    for (double& own : largest_) own = own > 0.0 ? own : 1.0;
+    scale_.array() /= largest_.array().sqrt();
   }
-  std::fill_n(least_.begin(), yielding_, -kVanished * most);
-  for (int i = 0; i < nz; ++i) least_[place_[i]] = kVanished / (scale_[i] * scale_[i]);
+  std::fill_n(least_.begin(), order_.yielding(), -kVanished * most);
+  for (int i = 0; i < nz; ++i) least_[place[i]] = kVanished / (scale_[i] * scale_[i]);
 }
 
 bool CoupledFactor::factor_symmetric() {
   const CoupledProblem& problem = *problem_;
   const int size = border_size(problem);
-  place();
+  order_.set(problem);
   symmetric_.start(size);
-  Half border(symmetric_, place_, places_);
+  Half border(symmetric_, order_.place(), places_);
   fill(border);
   weigh();
-  if (!scale_.allFinite() || !symmetric_.factor(begin_, least_)) return false;
+  if (!scale_.allFinite() || !symmetric_.factor(order_.begin(), least_)) return false;
   // What is left of the pivots of rows that depend on each other is rounding.
   double smallest = INFINITY, most = 0.0;
   for (int i = unknowns_of(problem); i < size; ++i) {
-    if (place_[i] < yielding_) continue;
-    const double pivot = std::abs(symmetric_.pivot(place_[i])) * scale_[i] * scale_[i];
+    if (order_.yields(i)) continue;
+    const double pivot = std::abs(symmetric_.pivot(order_.place()[i])) * scale_[i] * scale_[i];
     smallest = std::min(smallest, pivot);
     most = std::max(most, pivot);
   }
@@ -405,10 +344,11 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
       y[part.whole_at[f]] -= part.whole.col(static_cast<Eigen::Index>(f)).dot(x);
   }
   if (kind_ == Kind::symmetric) {
+    const std::vector<int>& place = order_.place();
     ordered_.resize(symmetric_.room());
-    for (Eigen::Index i = 0; i < border; ++i) ordered_[place_[i]] = y[i];
+    for (Eigen::Index i = 0; i < border; ++i) ordered_[place[i]] = y[i];
     symmetric_.solve(ordered_.data());
-    for (Eigen::Index i = 0; i < border; ++i) y[i] = ordered_[place_[i]];
+    for (Eigen::Index i = 0; i < border; ++i) y[i] = ordered_[place[i]];
   } else if (y.size() > 0) {
     y.array() *= scale_.array();
     if (kind_ == Kind::singular) {
@@ -467,8 +407,7 @@ double CoupledFactor::residual(const RightSide& right, const CoupledSolution& so
   Eigen::VectorXd& left = left_;
   left.resize(border);
   left << -right.r, right.c;
-  const auto* z = y_.data();
-  const auto* lambda = y_.data() + nz;
+  const double *z = y_.data(), *lambda = z + nz;
   for (const auto& [row, column, value] : problem.B) left[row] -= value * z[column];
   for (const auto& [row, column, value] : problem.G) {
     left[nz + row] -= value * z[column];

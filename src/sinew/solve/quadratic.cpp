@@ -93,12 +93,11 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
   x = -g;
   factor_.solveInPlace(x);
   // Violations are compared in units of what their row moves by: |L^-1 n|, the steepness of its limit.
-  scale_.resize(rows);
-  for (int i = 0; i < rows; ++i) {
-    half_ = rows_.col(i);
+  const auto steepness = [&](int row) {
+    half_ = rows_.col(row);
     factor_.matrixL().solveInPlace(half_);
-    scale_[i] = half_.norm();
-  }
+    return half_.norm();
+  };
   const double size = std::sqrt(std::abs(g.dot(x)));  // |L^T x|: how far the unbounded least is, in the same units
   const int limit = 100 + 20 * (rows + static_cast<int>(x.size()));
 
@@ -116,14 +115,16 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
       if (at_[i] != At::between || met_[static_cast<std::size_t>(i)]) continue;
       const double below = lower[i] - values_[i], above = values_[i] - upper[i], out = std::max(below, above);
       const double bound = below > above ? lower[i] : upper[i];
-      if (!(out > 1e-13 * (scale_[i] * size + std::abs(bound)))) continue;
-      if (scale_[i] == 0.0) {  // 0 . x beyond its limit
+      if (!(out > 0.0)) continue;
+      const double steep = steepness(i);
+      if (!(out > 1e-13 * (steep * size + std::abs(bound)))) continue;
+      if (steep == 0.0) {  // 0 . x beyond its limit
         conflict_ = {i};
         return Outcome::infeasible;
       }
       // Equalities first: they are never dropped.
       const bool equal = lower[i] == upper[i];
-      const double weight = equal ? INFINITY : out / scale_[i];
+      const double weight = equal ? INFINITY : out / steep;
       if (next.row >= 0 && !(weight > worst)) continue;
       worst = weight;
       next = {i, below > above ? 1.0 : -1.0, equal, 0.0};
