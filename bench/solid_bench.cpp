@@ -131,7 +131,7 @@ Row measure(Kind kind, int cells) {
 
   linalg::SparseFactor factor(model.solids[0].fronts);
   const StepContext context = make_context(model, last, command_at(model, last.time), 1.0);
-  assemble(model.solids[0], context.solids[0], last.solids[0].x, solid::Tangent::exact, factor.values());
+  assemble(model.solids[0], context.start_of(0), last.solids[0].x, solid::Tangent::exact, factor.values());
   factorise(factor, row);
   return row;
 }

@@ -72,10 +72,10 @@ double timed(const State& from, State& state, const Between& between, const Work
 }
 void nothing() {}
 
-linalg::SparseFactor::Matrix matrix_of(const Model& model, const State& state, std::size_t solid = 0) {
+linalg::SparseFactor::Matrix matrix_of(const Model& model, const State& state, int solid = 0) {
   const StepContext context = make_context(model, state, command_at(model, state.time), model.scene.time.step);
   linalg::SparseFactor factor(model.solids[solid].fronts);
-  assemble(model.solids[solid], context.solids[solid], state.solids[solid].x, solid::Tangent::definite,
+  assemble(model.solids[solid], context.start_of(solid), state.solids[solid].x, solid::Tangent::definite,
            factor.values());
   return factor.assembled();
 }
@@ -167,7 +167,7 @@ void grasper(int turns) {
   std::list<linalg::SparseFactor::Matrix> matrices;
   std::list<Cholmod> references;
   for (std::size_t i = 0; i < model.solids.size(); ++i)
-    references.emplace_back(matrices.emplace_back(matrix_of(model, state, i)), Cholmod::Ordering::metis);
+    references.emplace_back(matrices.emplace_back(matrix_of(model, state, static_cast<int>(i))), Cholmod::Ordering::metis);
   double step = kNever, two = kNever, reference = kNever;
   std::vector<double> all;
   StepReport report;

@@ -20,10 +20,13 @@
 #ifdef SINEW_COUNTS_MEMORY
 namespace {
 bool counting = false;
-long counted = 0;
+long counted = 0, granted = -1;  ///< pieces that there still are; negative: no end of them
 
-void count() {
-  if (counting) ++counted;
+/// False where there is no more.
+bool count() {
+  if (!counting) return true;
+  ++counted;
+  return granted < 0 || granted-- > 0;
 }
 }  // namespace
 
@@ -33,21 +36,11 @@ void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
-void* malloc(std::size_t size) {
-  count();
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t number, std::size_t size) {
-  count();
-  return __libc_calloc(number, size);
-}
-void* realloc(void* old, std::size_t size) {
-  count();
-  return __libc_realloc(old, size);
-}
+void* malloc(std::size_t size) { return count() ? __libc_malloc(size) : nullptr; }
+void* calloc(std::size_t number, std::size_t size) { return count() ? __libc_calloc(number, size) : nullptr; }
+void* realloc(void* old, std::size_t size) { return count() ? __libc_realloc(old, size) : nullptr; }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  count();
-  return __libc_memalign(alignment, size);
+  return count() ? __libc_memalign(alignment, size) : nullptr;
 }
 }
 
@@ -128,6 +121,42 @@ TEST(Memory, InverseStepsAskForNone) {
   // But to list the limits that are in the way.
   goal.at.y() -= 10 * mm;
   EXPECT_LE(pieces(), 5);
+}
+
+TEST(Memory, StatesStayWhereThereIsNoMore) {
+  for (const int iterations : {1, 0}) {
+    Scene scene = cable_block();
+    scene.newton.iterations = iterations;
+    const Model model = build(scene, read_block);
+    const State start = initial_state(model);
+    const std::vector<double> before = pack(start);
+    int refused = 0;
+    std::vector<double> after;
+    for (long pieces = 0; after.empty(); pieces += 1 + pieces / 4) {
+      Workspace workspace = make_workspace(model);
+      State state = start;
+      granted = pieces;
+      counting = true;
+      try {
+        advance(model, workspace, state);
+        counting = false;
+        after = pack(state);
+      } catch (const std::bad_alloc&) {
+        counting = false;
+        ++refused;
+        EXPECT_EQ(pack(state), before) << pieces;
+      }
+      granted = -1;
+      // And the workspace can be used again, as a new one.
+      if (!after.empty()) break;
+      Workspace other = make_workspace(model);
+      State again = start;
+      EXPECT_TRUE(accepted(advance(model, workspace, state).status)) << pieces;
+      EXPECT_TRUE(accepted(advance(model, other, again).status)) << pieces;
+      EXPECT_EQ(pack(state), pack(again)) << pieces;
+    }
+    EXPECT_GT(refused, 10);
+  }
 }
 
 TEST(Memory, SolidsOfAllKindsAskForNone) {

@@ -49,7 +49,7 @@ TEST(Factor, OfScenesHasSmallBackwardErrors) {
     const StepContext context =
         make_context(model, state, command_at(model, state.time + model.scene.time.step), model.scene.time.step);
     linalg::SparseFactor factor(solid.fronts);
-    assemble(solid, context.solids[0], state.solids[0].x, solid::Tangent::definite, factor.values());
+    assemble(solid, context.start_of(0), state.solids[0].x, solid::Tangent::definite, factor.values());
     const Eigen::MatrixXd A = Eigen::MatrixXd(factor.assembled()).selfadjointView<Eigen::Lower>();
     std::copy_n(solid.border.valuePtr(), solid.border.nonZeros(), factor.border_values());
     ASSERT_TRUE(factor.factor());

@@ -312,8 +312,8 @@ TEST(Tangent, batches_are_what_their_elements_are_also_inside_out) {
     one_by_one.body.others.insert(one_by_one.body.others.end(), batch.cell, batch.cell + batch.count);
   one_by_one.body.batches.clear();
   linalg::SparseFactor batches(model.solids[0].fronts), elements(model.solids[0].fronts);
-  assemble(model.solids[0], context.solids[0], x, solid::Tangent::definite, batches.values());
-  assemble(one_by_one, context.solids[0], x, solid::Tangent::definite, elements.values());
+  assemble(model.solids[0], context.start_of(0), x, solid::Tangent::definite, batches.values());
+  assemble(one_by_one, context.start_of(0), x, solid::Tangent::definite, elements.values());
   const linalg::SparseFactor::Matrix A = elements.assembled(), off = batches.assembled() - A;
   EXPECT_LT(off.norm(), 1e-12 * A.norm());
 }
@@ -327,7 +327,7 @@ TEST(Springs, are_in_the_tangent) {
   for (Eigen::Index i = 0; i < state.solids[0].x.size(); ++i)
     state.solids[0].x(i) += 0.02 * std::sin(1.3 * static_cast<double>(i * i + 1));
   linalg::SparseFactor factor(solid.fronts);
-  assemble(solid, context.solids[0], state.solids[0].x, solid::Tangent::exact, factor.values());
+  assemble(solid, context.start_of(0), state.solids[0].x, solid::Tangent::exact, factor.values());
   const Eigen::MatrixXd K = Eigen::MatrixXd(factor.assembled()).selfadjointView<Eigen::Lower>();
   const auto force = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
     State moved = state;

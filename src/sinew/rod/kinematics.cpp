@@ -59,7 +59,7 @@ void reconfigure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Con
 }
 
 void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape) {
-  shape.rod = &rod;
+  shape.rod = nullptr;  // until all is there: memory may run out
   shape.from = base;
   shape.q = q;
   shape.origin = base.rest.p;
@@ -116,6 +116,7 @@ void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Confi
     shape.R.push_back(R);
     shape.p.push_back(p);
   }
+  shape.rod = &rod;
 }
 
 Branch branch(const Configuration& shape, double s) {

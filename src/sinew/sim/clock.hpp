@@ -1,4 +1,4 @@
-// Wall time of a stage, added to a sum when it ends.
+// Wall time of stages, added to their sums when they end.
 #pragma once
 
 #include <chrono>
@@ -7,13 +7,24 @@ namespace sinew {
 
 class Clock {
  public:
-  explicit Clock(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+  explicit Clock(double& sum) : sum_(&sum), start_(std::chrono::steady_clock::now()) {}
   Clock(const Clock&) = delete;
   Clock& operator=(const Clock&) = delete;
-  ~Clock() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  ~Clock() { end(); }
+  /// Ends a stage where another one begins.
+  void next(double& sum) {
+    start_ = end();
+    sum_ = &sum;
+  }
 
  private:
-  double& sum_;
+  std::chrono::steady_clock::time_point end() {
+    const auto now = std::chrono::steady_clock::now();
+    *sum_ += std::chrono::duration<double>(now - start_).count();
+    return now;
+  }
+
+  double* sum_;
   std::chrono::steady_clock::time_point start_;
 };
 

@@ -30,9 +30,9 @@ bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || 
 void solid_forces(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, int number,
                   SolidForces& forces) {
   const solid::Body& body = context.model.solids[number].body;
-  solid::deform(body, context.solids[number], iterate.solids[number].x, forces.deformation);
-  solid::residual(body, context.solids[number], iterate.solids[number].x, forces.deformation, context.gravity,
-                  forces.nodal);
+  const solid::StepStart start = context.start_of(number);
+  solid::deform(body, start, iterate.solids[number].x, forces.deformation);
+  solid::residual(body, start, iterate.solids[number].x, forces.deformation, context.gravity, forces.nodal);
   forces.scale = forces.nodal.scale;
   Eigen::Matrix3Xd& r = forces.nodal.sum;
   const SolidModel& model = context.model.solids[number];
@@ -74,12 +74,7 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
   solid::at_unknowns(body, r, forces.r);
   forces.reaction.resize(model.held());
   Eigen::Index held = 0;
-  for (Eigen::Index node = 0; node < r.cols(); ++node) {
-    if (body.free(node)) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (body.unknown(axis, node) < 0) forces.reaction[held++] = std::exchange(r(axis, node), 0.0);
-    }
-  }
+  solid::each_held(body, [&](int axis, int node) { forces.reaction[held++] = std::exchange(r(axis, node), 0.0); });
   forces.largest = std::sqrt(r.colwise().squaredNorm().maxCoeff());
 }
 
@@ -87,35 +82,30 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
                         solid::Tangent kind, threads::Crew& crew, StageTimes& times, solve::VolumePart& volume) {
   const SolidModel& model = context.model.solids[number];
   if (!factor_) plan(model);
-  {
-    const Clock clock(times.assembly);
-    factor_->clear();
-    double* const values = factor_->values();
-    for (std::size_t k = 0; k < model.rows.size(); ++k) {
-      const bool on = is_on(iterate, context.model.solid_rows[model.rows[k]]);
-      const int* first = model.border.outerIndexPtr() + 3 * k;
-      for (int at = first[0]; at < first[3]; ++at)
-        factor_->border_values()[at] = on ? model.border.valuePtr()[at] : 0.0;
-    }
-    for (int at = model.border.outerIndexPtr()[3 * model.rows.size()]; at < model.border.nonZeros(); ++at)
-      factor_->border_values()[at] = model.border.valuePtr()[at];
-    assemble(model, context.solids[number], iterate.solids[number].x, forces.deformation, kind, values);
-    for (const Grip& grip : context.command.grips) {
-      if (grip.solid == number) add_grip(model, grip, values);
-    }
-    if (kind == solid::Tangent::exact) {
-      each_load(context, number, [&](const SolidLoadModel& load, double factor) {
-        add_pressure_tangent(load, factor, iterate.solids[number].x, values);
-      });
-    }
+  Clock clock(times.assembly);
+  factor_->clear();
+  double* const values = factor_->values();
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const bool on = is_on(iterate, context.model.solid_rows[model.rows[k]]);
+    const int* first = model.border.outerIndexPtr() + 3 * k;
+    for (int at = first[0]; at < first[3]; ++at) factor_->border_values()[at] = on ? model.border.valuePtr()[at] : 0.0;
   }
-  {
-    const Clock clock(times.factor);
-    push_ = -forces.r;
-    const linalg::HalfSolve right{push_, pushed_, &moved_};
-    if (!factor_->factor(crew, &right)) return false;
+  for (int at = model.border.outerIndexPtr()[3 * model.rows.size()]; at < model.border.nonZeros(); ++at)
+    factor_->border_values()[at] = model.border.valuePtr()[at];
+  assemble(model, context.start_of(number), iterate.solids[number].x, forces.deformation, kind, values);
+  for (const Grip& grip : context.command.grips) {
+    if (grip.solid == number) add_grip(model, grip, values);
   }
-  const Clock clock(times.compliance);
+  if (kind == solid::Tangent::exact) {
+    each_load(context, number, [&](const SolidLoadModel& load, double factor) {
+      add_pressure_tangent(load, factor, iterate.solids[number].x, values);
+    });
+  }
+  clock.next(times.factor);
+  push_ = -forces.r;
+  const linalg::HalfSolve right{push_, pushed_, &moved_};
+  if (!factor_->factor(crew, &right)) return false;
+  clock.next(times.compliance);
   volume.at.clear();
   for (const int k : kept_) volume.at.push_back(row_of(model, context.model, k));
   Eigen::MatrixXd& W = model.watched.empty() ? volume.W : compliance_;
@@ -133,6 +123,11 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
       const auto from = W.col(kept_places_[j]);
       auto to = volume.W.col(j);
       for (Eigen::Index i = volume.symmetric ? j : 0; i < rows; ++i) to[i] = from[kept_places_[i]];
+    }
+    watched_.resize(rows, static_cast<Eigen::Index>(3 * model.watched.size()));
+    for (Eigen::Index k = 0; k < watched_.cols(); ++k) {
+      const int own = static_cast<int>(3 * model.rows.size()) + static_cast<int>(k);
+      for (Eigen::Index j = 0; j < rows; ++j) watched_(j, k) = compliance_of(own, kept_[j]);
     }
   }
   return Z_.allFinite();
@@ -219,13 +214,13 @@ void FreeMotion::watched_motion(const SolidModel& model, const Model& whole, con
                                 bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
   if (model.watched.empty()) return;
   gather(model, whole, dlambda);
+  acting_.resize(watched_.rows());
+  for (Eigen::Index j = 0; j < acting_.size(); ++j) acting_[j] = rows_[kept_[j]];
   for (std::size_t k = 0; k < model.watched.size(); ++k) {
-    for (int i = 0; i < 3; ++i) {
-      const auto own = static_cast<Eigen::Index>(3 * (model.rows.size() + k)) + i;
-      double sum = pushed ? free_[own] : 0.0;
-      for (const int other : kept_) sum += compliance_of(static_cast<int>(own), other) * rows_[other];
-      motion[3 * model.watched[k] + i] = sum;
-    }
+    const auto first = static_cast<Eigen::Index>(3 * k), own = static_cast<Eigen::Index>(3 * model.rows.size()) + first;
+    auto moved = motion.segment<3>(3 * model.watched[k]);
+    moved.noalias() = watched_.middleCols<3>(first).transpose().lazyProduct(acting_);
+    if (pushed) moved += free_.segment<3>(own);
   }
 }
 

@@ -83,6 +83,7 @@ class FreeMotion {
   std::vector<int> kept_;        ///< border rows that are rows of the scene, in the order in which they are kept
   Eigen::VectorXi kept_places_;  ///< and their places in that order
   Eigen::MatrixXd compliance_;   ///< where points are watched: of all border rows, as they are kept
+  Eigen::MatrixXd watched_;      ///< and its columns of watched rows, over the rows of the scene as they are kept
   Eigen::VectorXd free_;         ///< motion of the border rows by the push
   std::vector<int> rim_;         ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;    ///< V = 1 - Y Z Y^T S; empty where A is symmetric
@@ -90,7 +91,7 @@ class FreeMotion {
   Eigen::VectorXd push_, pushed_, moved_;  ///< what the forces left unbalanced, half solved
   std::vector<int> reach_;                 ///< where rows of contacts may have entries
   Eigen::MatrixXd contacts_, coupled_;     ///< R H_c^T there, and H A^-1 H_c^T
-  Eigen::VectorXd half_;
+  Eigen::VectorXd half_, acting_;
 };
 
 }  // namespace sinew

@@ -400,7 +400,6 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   StepContext& context = memory.context;
   context.set(start, command, time - start.time);
   context.rate = 0.0;
-  for (solid::StepStart& own : context.solids) own.rate = 0.0;
   memory.iterate.state = state;
   find_contacts(context, memory.iterate.state, memory.here.contacts());
   return solve_there(memory, solid::Tangent::exact, times, steer);
@@ -409,7 +408,8 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
 /// The first round of a step of h, as the paper's.
 bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
                     const Linearization::Steer& steer) {
-  begin_step(memory, start, command, h);
+  memory.context.start = start;
+  begin_step(memory, command, h);
   place_held(memory.context, memory.iterate.state);
   return solve_there(memory, solid::Tangent::definite, times, steer);
 }

@@ -50,12 +50,11 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
         if (then) factor_solid(i, *then, own);
       },
       [&](StageTimes& own) {
-        {
-          const Clock clock(own.rods);
-          linearize(context, iterate, contacts_.touches, reduced_);
-        }
-        const Clock clock(own.solve);
-        if (then) factor_.eliminate_chains(reduced_.problem);
+        Clock clock(own.rods);
+        linearize(context, iterate, contacts_.touches, reduced_);
+        if (!then) return;
+        clock.next(own.solve);
+        factor_.eliminate_chains(reduced_.problem);
       });
   largest_ = reduced_.largest;
   scale_ = reduced_.scale;
@@ -80,11 +79,12 @@ ContactReport Linearization::contact_report() const {
 
 bool Linearization::finite() const {
   const solve::CoupledProblem& problem = reduced_.problem;
-  return std::isfinite(largest_) && std::isfinite(reduced_.violation) && problem.r.allFinite() &&
-         problem.c.allFinite() &&
-         std::all_of(forces_.begin(), forces_.end(), [](const SolidForces& f) { return f.r.allFinite(); }) &&
+  // 0 times what is not finite is NaN
+  const auto number = [](const Eigen::VectorXd& v) { return (v.array() * 0.0).sum() == 0.0; };
+  return std::isfinite(largest_) && std::isfinite(reduced_.violation) && number(problem.r) && number(problem.c) &&
+         std::all_of(forces_.begin(), forces_.end(), [&](const SolidForces& f) { return number(f.r); }) &&
          std::all_of(problem.chains.begin(), problem.chains.end(),
-                     [](const solve::ChainPart& part) { return part.r.allFinite(); });
+                     [&](const solve::ChainPart& part) { return number(part.r); });
 }
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {

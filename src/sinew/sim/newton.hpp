@@ -77,8 +77,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
 /// How the scene wants its steps made, or whoever makes them.
 NewtonRules step_rules(const Model& model, const Effort& effort);
 
-/// Context and first guess of a step of h from a state to a command; returns the seconds that finding contacts took.
-double begin_step(Memory& memory, const State& state, const Command& command, double h);
+/// Context and first guess of a step of h from its start in Memory::context to a command; returns the seconds that
+/// finding contacts took.
+double begin_step(Memory& memory, const Command& command, double h);
 
 /// One step of h from a state to a command, by these rules: `step`, `inverse_step`. On failure the state stays.
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state);

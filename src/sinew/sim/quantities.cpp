@@ -58,13 +58,10 @@ Values reaction(const Model& model, const State& state, const OutputModel& outpu
   const solid::Body& body = model.solids[output.solid].body;
   Vec3 sum = Vec3::Zero();
   Eigen::Index held = 0;
-  for (int node = 0; node < body.nodes(); ++node) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (body.unknown(axis, node) >= 0) continue;
-      if (output.nodes[node]) sum[axis] += state.solids[output.solid].reaction[held];
-      ++held;
-    }
-  }
+  solid::each_held(body, [&](int axis, int node) {
+    if (output.nodes[node]) sum[axis] += state.solids[output.solid].reaction[held];
+    ++held;
+  });
   return numbers(sum);
 }
 

@@ -52,12 +52,13 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-double begin_step(Memory& memory, const State& state, const Command& command, double h) {
-  memory.context.set(state, command, h);
+double begin_step(Memory& memory, const Command& command, double h) {
+  memory.context.set(command, h);
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.here);
+  if (memory.context.model.pairs.empty()) return 0.0;
   double spent = 0.0;
   {
     const Clock clock(spent);
@@ -66,13 +67,32 @@ double begin_step(Memory& memory, const State& state, const Command& command, do
   return spent;
 }
 
+namespace {
+
+/// A state that stands elsewhere for a while, and comes back whatever happens.
+class Lent {
+ public:
+  Lent(State& own, State& there) : own_(own), there_(there) { std::swap(own_, there_); }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  ~Lent() { std::swap(own_, there_); }
+
+ private:
+  State &own_, &there_;
+};
+
+}  // namespace
+
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state) {
-  Iterate& iterate = memory.iterate;
-  const double spent = begin_step(memory, state, command, h);
-  // What is prescribed stands in the context already.
-  StepReport report = newton([](double, StepContext&) {}, memory, rules, iterate);
-  report.times.contact += spent;
-  if (accepted(report.status)) std::swap(state, iterate.state);
+  StepReport report;
+  {
+    const Lent lent(state, memory.context.start);
+    const double spent = begin_step(memory, command, h);
+    // What is prescribed stands in the context already.
+    report = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
+    report.times.contact += spent;
+  }
+  if (accepted(report.status)) std::swap(state, memory.iterate.state);
   return report;
 }
 

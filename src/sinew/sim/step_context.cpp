@@ -4,6 +4,10 @@ namespace sinew {
 
 void StepContext::set(const State& from, const Command& wanted, double duration) {
   start = from;
+  set(wanted, duration);
+}
+
+void StepContext::set(const Command& wanted, double duration) {
   h = duration;
   rate = model.scene.analysis == Analysis::dynamic ? 1.0 / duration : 0.0;
   command = wanted;
@@ -12,12 +16,6 @@ void StepContext::set(const State& from, const Command& wanted, double duration)
   displacement.clear();
   for (const auto& [name, frame] : model.scene.frames)
     displacement.push_back(frame_displacement(frame, start.time + h));
-  solids.resize(start.solids.size());
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    solids[i].x = start.solids[i].x;
-    solids[i].v = start.solids[i].v;
-    solids[i].rate = rate;
-  }
   bases.clear();
   for (const RodModel& rod : model.rods) bases.push_back(compose(moved(rod.frame), rod.base));
   cable_bases.clear();

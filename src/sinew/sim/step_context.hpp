@@ -11,6 +11,8 @@ struct StepContext {
   explicit StepContext(const Model& of) : model(of) {}
   /// Memory of an earlier step is used again.
   void set(const State& from, const Command& wanted, double duration);
+  /// The same of a start that is there already.
+  void set(const Command& wanted, double duration);
 
   const Model& model;
   State start;
@@ -21,10 +23,10 @@ struct StepContext {
   /// The iterate is where the step starts: the forces that would stop a moving rod there are no forces that act along
   /// the step, and stay out of its geometric stiffness, where they would count as compression.
   bool at_start = false;
-  std::vector<Placement> displacement;  ///< of each frame, at the end of the step
-  std::vector<solid::StepStart> solids;
+  std::vector<Placement> displacement;        ///< of each frame, at the end of the step
   std::vector<Placement> bases, cable_bases;  ///< of each rod and cable, at the end of the step
 
+  solid::StepStart start_of(int solid) const { return {start.solids[solid].x, start.solids[solid].v, rate}; }
   Placement moved(int frame) const { return frame < 0 ? Placement{} : displacement[frame]; }
 };
 StepContext make_context(const Model& model, const State& start, const Command& command, double h);

@@ -17,8 +17,7 @@ namespace sinew {
 void place_held(const StepContext& context, State& iterate) {
   for (std::size_t i = 0; i < iterate.solids.size(); ++i) {
     const SolidModel& model = context.model.solids[i];
-    for (int node = 0; node < model.body.nodes(); ++node) {
-      if (model.body.free(node)) continue;
+    for (const int node : model.body.held_nodes) {
       const Vec3 held = apply(context.moved(model.carrier[node]), model.body.rest.col(node));
       for (int axis = 0; axis < 3; ++axis) {
         if (model.body.unknown(axis, node) < 0) iterate.solids[i].x(axis, node) = held[axis];
@@ -106,11 +105,10 @@ double work_of_supports(const StepContext& context, const State& next, int numbe
   const SolidState &from = context.start.solids[number], &to = next.solids[number];
   double sum = 0.0;
   Eigen::Index held = 0;
-  for (Eigen::Index i = 0; i < to.x.size(); ++i) {
-    if (model.body.unknown(i) >= 0) continue;
-    sum += 0.5 * (from.reaction[held] + to.reaction[held]) * (to.x(i) - from.x(i));
+  solid::each_held(model.body, [&](int axis, int node) {
+    sum += 0.5 * (from.reaction[held] + to.reaction[held]) * (to.x(axis, node) - from.x(axis, node));
     ++held;
-  }
+  });
   if (model.springs.size() == 0) return sum;
   const Placement before = moved(context.model, context.start, model.frame), after = context.moved(model.frame);
   const Eigen::Matrix3Xd drawn = 0.5 * (spring_stretch(model, before, from.x) + spring_stretch(model, after, to.x));

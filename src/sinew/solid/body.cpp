@@ -129,6 +129,7 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
   body.unknown.resize(3, body.nodes());
   for (Eigen::Index node = 0; node < body.unknown.cols(); ++node) {
     for (int axis = 0; axis < 3; ++axis) body.unknown(axis, node) = held(axis, node) ? -1 : body.unknowns++;
+    if (held.col(node).any()) body.held_nodes.push_back(static_cast<int>(node));
   }
   return body;
 }
@@ -147,26 +148,46 @@ void sort_batches(Body& body, const std::vector<int>& rank) {
   }
 }
 
+namespace {
+
+/// Visits the runs of nodes between those that are held, (first node, their number), and then these, (node).
+template <class Free, class Held>
+void each_run(const Body& body, const Free& free, const Held& held) {
+  int from = 0;
+  const auto visit = [&](int end) {
+    if (end > from) free(from, end - from);
+    from = end + 1;
+  };
+  for (const int node : body.held_nodes) {
+    visit(node);
+    held(node);
+  }
+  visit(body.nodes());
+}
+
+}  // namespace
+
 void at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal, Eigen::VectorXd& u) {
   u.resize(body.unknowns);
-  for (Eigen::Index node = 0; node < nodal.cols(); ++node) {
-    const bool free = body.free(node);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int own = body.unknown(axis, node);
-      if (free || own >= 0) u[own] = nodal(axis, node);
-    }
-  }
+  each_run(
+      body, [&](int node, int count) { std::copy_n(&nodal(0, node), 3 * count, &u[body.unknown(0, node)]); },
+      [&](int node) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (const int own = body.unknown(axis, node); own >= 0) u[own] = nodal(axis, node);
+        }
+      });
 }
 
 void from_unknowns(const Body& body, const Eigen::VectorXd& u, Eigen::Matrix3Xd& nodal) {
   nodal.resize(3, body.nodes());
-  for (Eigen::Index node = 0; node < nodal.cols(); ++node) {
-    const bool free = body.free(node);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int own = body.unknown(axis, node);
-      nodal(axis, node) = free || own >= 0 ? u[own] : 0.0;
-    }
-  }
+  each_run(
+      body, [&](int node, int count) { std::copy_n(&u[body.unknown(0, node)], 3 * count, &nodal(0, node)); },
+      [&](int node) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int own = body.unknown(axis, node);
+          nodal(axis, node) = own >= 0 ? u[own] : 0.0;
+        }
+      });
 }
 
 namespace {
@@ -181,6 +202,15 @@ Eigen::Map<const Vec3> elastic_of(const linalg::AlignedVector<double>& forces, E
 }
 Eigen::Map<const Vec3> viscous_of(const linalg::AlignedVector<double>& forces, Eigen::Index node) {
   return Eigen::Map<const Vec3>(forces.data() + kRecord * node + kRecord / 2);
+}
+
+/// Visits the cells of a batch that have no rotation.
+template <class Visit>
+void each_missing(const TetBatch& batch, const TetFrames& frames, const Visit& visit) {
+  if (frames.missing == 0) return;
+  for (int i = 0; i < batch.count; ++i) {
+    if (frames.missing >> i & 1U) visit(batch.cell[i]);
+  }
 }
 
 bool viscous(const Body& body, int e) {
@@ -208,12 +238,7 @@ void add_others(const Body& body, const StepStart& start, const Eigen::Matrix3Xd
                   Derivatives::first, Tangent::exact, response);
     scatter(kRecord / 2);
   };
-  for (std::size_t k = 0; k < body.batches.size(); ++k) {
-    const TetBatch& batch = body.batches[k];
-    for (int i = 0; i < batch.count; ++i) {
-      if (deformation.frames[k].missing >> i & 1U) add(batch.cell[i]);
-    }
-  }
+  for (std::size_t k = 0; k < body.batches.size(); ++k) each_missing(body.batches[k], deformation.frames[k], add);
   for (const int e : body.others) add(e);
 }
 
@@ -237,10 +262,11 @@ void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
 }
 
 Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
+  const StepStart still{x, x};  // (without a rate neither counts)
   Deformation deformation;
-  deform(body, {}, x, deformation);
+  deform(body, still, x, deformation);
   linalg::AlignedVector<double> others;
-  add_others(body, {}, x, deformation, others);
+  add_others(body, still, x, deformation, others);
   Eigen::Matrix3Xd force = records(deformation.forces).topLeftCorner(3, body.nodes());
   if (!others.empty()) force += records(others).topRows<3>();
   return force;
@@ -262,18 +288,13 @@ void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& 
   add_others(body, start, x, deformation, residual.others);
   const double factor = mass_factor(body, start.rate);
   residual.sum.resize(3, n);
-  double largest = 0.0;  // squared
-  const bool lumped = body.mass.nonZeros() == n;
-  const auto change = [&](Eigen::Index a) -> Vec3 {
-    return factor * (x.col(a) - start.x.col(a)) - start.rate * start.v.col(a);  // (v - v_0)/h + ..
-  };
+  Eigen::Array4d largest = Eigen::Array4d::Zero();  // of each kind, squared
   for (int b = 0; b < n; ++b) {
     Vec3 inertia = Vec3::Zero();
-    if (start.rate > 0.0 && lumped) {
-      inertia = body.masses[b] * change(b);
-    } else if (start.rate > 0.0) {
-      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)
-        inertia += at.value() * change(at.row());
+    if (start.rate > 0.0) {
+      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)  // (v - v_0)/h + ..
+        inertia +=
+            at.value() * (factor * (x.col(at.row()) - start.x.col(at.row())) - start.rate * start.v.col(at.row()));
     }
     const Vec3 weight = body.masses[b] * gravity;
     Vec3 elastic = elastic_of(deformation.forces, b), viscous = viscous_of(deformation.forces, b);
@@ -282,10 +303,10 @@ void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& 
       viscous += viscous_of(residual.others, b);
     }
     residual.sum.col(b) = inertia + elastic + viscous - weight;
-    largest =
-        std::max({largest, inertia.squaredNorm(), elastic.squaredNorm(), viscous.squaredNorm(), weight.squaredNorm()});
+    largest = largest.max(
+        Eigen::Array4d(inertia.squaredNorm(), elastic.squaredNorm(), viscous.squaredNorm(), weight.squaredNorm()));
   }
-  residual.scale = std::sqrt(largest);
+  residual.scale = std::sqrt(largest.maxCoeff());
 }
 
 void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x,
@@ -310,9 +331,7 @@ void assemble_tangent(const Body& body, const StepStart& start, const Eigen::Mat
       kernels.exact(batch, frames, deformation.nodes.data(), start.rate, stiffness);
     }
     insert_batch(batch, stiffness, frames.missing);
-    for (int i = 0; i < batch.count; ++i) {
-      if (frames.missing >> i & 1U) add(batch.cell[i]);
-    }
+    each_missing(batch, frames, add);
   }
   for (const int e : body.others) add(e);
 }

@@ -38,16 +38,12 @@ struct Body {
   double damping_mass = 0.0;         ///< Rayleigh's alpha [1/s]
   Eigen::Matrix3Xi unknown;          ///< per node and axis: number among the unknowns, or -1 where it is held
   int unknowns = 0;
+  std::vector<int> held_nodes;  ///< those of which a coordinate is held, ascending
 
   std::vector<TetBatch> batches;  ///< the corotational linear tetrahedra, in the order of their numbers
   std::vector<int> others;        ///< all other cells
 
   int nodes() const { return static_cast<int>(rest.cols()); }
-  /// No coordinate of the node is held.
-  bool free(Eigen::Index node) const {
-    const int* own = &unknown(0, node);
-    return (own[0] | own[1] | own[2]) >= 0;
-  }
   int elements() const { return static_cast<int>(cells.size()); }
   int points() const { return static_cast<int>(volumes.size()); }
   ElementRest element(int cell) const;
@@ -59,6 +55,16 @@ struct Body {
     return cell_nodes(x, cells[static_cast<std::size_t>(cell)]);
   }
 };
+
+/// Visits the coordinates that are held, (axis, node): those of a node together, nodes ascending.
+template <class Visit>
+void each_held(const Body& body, const Visit& visit) {
+  for (const int node : body.held_nodes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (body.unknown(axis, node) < 0) visit(axis, node);
+    }
+  }
+}
 
 /// What a quantity given per node is at the body's unknowns, and a quantity at the unknowns per node, 0 where held.
 void at_unknowns(const Body& body, const Eigen::Matrix3Xd& nodal, Eigen::VectorXd& u);
@@ -72,10 +78,10 @@ Body make_body(Eigen::Matrix3Xd rest, std::vector<Cell> cells, std::vector<Mater
 /// Renumbers the nodes within each batch's elements, those of low rank first.
 void sort_batches(Body& body, const std::vector<int>& rank);
 
-/// What a time step needs to know about its start.
+/// What a time step needs to know about its start; it sees what others own.
 struct StepStart {
-  Eigen::Matrix3Xd x, v;  ///< [m], [m/s] at the start
-  double rate = 0.0;      ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
+  const Eigen::Matrix3Xd &x, &v;  ///< [m], [m/s] at the start
+  double rate = 0.0;              ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
 };
 
 /// Elastic force [N], 3 x n: dE/dx, so that it stands with a plus on the left of the equation of motion.
