@@ -166,8 +166,8 @@ void grasper(int turns) {
   State again = state;
   std::list<linalg::SparseFactor::Matrix> matrices;
   std::list<Cholmod> references;
-  for (std::size_t i = 0; i < model.solids.size(); ++i)
-    references.emplace_back(matrices.emplace_back(matrix_of(model, state, static_cast<int>(i))), Cholmod::Ordering::metis);
+  for (int i = 0; i < static_cast<int>(model.solids.size()); ++i)
+    references.emplace_back(matrices.emplace_back(matrix_of(model, state, i)), Cholmod::Ordering::metis);
   double step = kNever, two = kNever, reference = kNever;
   std::vector<double> all;
   StepReport report;

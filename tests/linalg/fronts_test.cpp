@@ -220,6 +220,11 @@ TEST_P(EveryKernel, SinglePrecisionIsRefinedToDouble) {
     factor.half_solve(b, y);
     factor.border_times(y, motion);
     EXPECT_LT((motion - H * x).norm(), 1e-3 * (H * x).norm());
+    Eigen::VectorXd along, moved;  // the same right side, eliminated beside the matrix
+    const HalfSolve right{b, along, &moved};
+    ASSERT_TRUE(factor.factor(threads::Crew::none(), &right));
+    EXPECT_LT((along - y).norm(), 1e-4 * y.norm());
+    EXPECT_LT((moved - H * x).norm(), 1e-3 * (H * x).norm());
   }
 }
 

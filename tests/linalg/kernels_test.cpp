@@ -5,7 +5,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <string>
+#include <vector>
 
 namespace sinew::linalg {
 namespace {
@@ -110,6 +113,40 @@ TEST_P(Kernel, FactorsPanels) {
   }
 }
 
+/// Nodes of which some coordinates are held, a panel of the first ones' columns.
+TEST_P(Kernel, StartsPanelsFromTheirBlocks) {
+  constexpr std::array<std::uint8_t, 7> kSlots = {7, 7, 5, 7, 2, 7, 3};
+  std::array<int, 8> first{};  // unknown of each node, and their number
+  for (std::size_t i = 0; i < kSlots.size(); ++i) first[i + 1] = first[i] + std::popcount(kSlots[i]);
+  for (const int own_nodes : {1, 3, 5, 7}) {
+    const int columns = first[static_cast<std::size_t>(own_nodes)], height = first.back();
+    Eigen::MatrixXd panel = Eigen::MatrixXd::Constant(whole_lanes(height) + kLanes, columns, NAN);
+    Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(panel.rows(), columns);
+    std::vector<Block> blocks;
+    std::vector<double> numbers;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(own_nodes); ++j) {
+      for (std::size_t i = j; i < kSlots.size(); ++i) {
+        if ((i + j) % 4 == 3) continue;  // nodes that do not meet
+        const Eigen::Matrix3d entries = Eigen::Matrix3d::Random();
+        for (int c = 0; c < 3; ++c) {
+          for (int r = 0; r < 4; ++r) numbers.push_back(r < 3 ? entries(r, c) : 0.0);
+        }
+        blocks.push_back({static_cast<std::uint32_t>(first[i] + first[j] * stride(panel)), kSlots[i], kSlots[j]});
+        for (int c = 0, column = first[j]; c < 3; ++c) {
+          if (!(kSlots[j] >> c & 1)) continue;
+          for (int r = 0, row = first[i]; r < 3; ++r) {
+            if (kSlots[i] >> r & 1) expected(row++, column) = entries(r, c);
+          }
+          ++column;
+        }
+      }
+    }
+    own->start(panel.data(), stride(panel), columns, blocks.data(), static_cast<int>(blocks.size()), numbers.data());
+    for (int j = 0; j < columns; ++j)
+      EXPECT_EQ(panel.col(j).tail(panel.rows() - j), expected.col(j).tail(panel.rows() - j)) << j << " of " << columns;
+  }
+}
+
 TEST_P(Kernel, RefusesPivotsThatAreNone) {
   for (const double bad : {0.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
     for (const int at : {0, 5, 12}) {
@@ -135,7 +172,7 @@ TEST_P(Kernel, SolvesAndMultiplies) {
       own->multiply_transposed(A.data(), stride(A), height, columns, before.data(), back.data());
       EXPECT_LT((back - (x - rows.transpose() * before.head(height))).norm(), 1e-13 * (1 + height));
     }
-    Eigen::MatrixXd P = roomy(columns, columns);
+    Eigen::MatrixXd P = roomy(whole_lanes(columns), columns);  // below the square are other rows
     for (int i = 0; i < columns; ++i) P(i, i) += 5.0;
     const Eigen::MatrixXd L = P.topLeftCorner(columns, columns).triangularView<Eigen::Lower>();
     P.topLeftCorner(columns, columns) = L;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 #include "sinew/io/mesh_file.hpp"
@@ -20,13 +21,13 @@
 #ifdef SINEW_COUNTS_MEMORY
 namespace {
 bool counting = false;
-long counted = 0, granted = -1;  ///< pieces that there still are; negative: no end of them
+constexpr long kAll = std::numeric_limits<long>::max();
+long counted = 0, granted = kAll;  ///< pieces, and how many there are
 
 /// False where there is no more.
 bool count() {
   if (!counting) return true;
-  ++counted;
-  return granted < 0 || granted-- > 0;
+  return counted++ < granted;
 }
 }  // namespace
 
@@ -123,40 +124,59 @@ TEST(Memory, InverseStepsAskForNone) {
   EXPECT_LE(pieces(), 5);
 }
 
+/// A step that finds ever more memory, until it is enough: the state stays, and the workspace can be used again. (But
+/// for matrices that change their size: Eigen 3.4 loses track of one that finds no memory then.)
+void expect_to_stay(const Model& model, const State& start, const Told& told = {}) {
+  const std::vector<double> before = pack(start);
+  Workspace other = make_workspace(model);
+  State expected = start;
+  ASSERT_TRUE(accepted(advance(model, other, expected, {}, told).status));
+  const std::vector<double> after = pack(expected);
+  long refused = 0;
+  for (bool done = false; !done; ++refused) {
+    Workspace workspace = make_workspace(model);
+    State state = start;
+    counted = 0;
+    granted = refused;
+    counting = true;
+    try {
+      const StepReport report = advance(model, workspace, state, {}, told);
+      counting = false;
+      done = accepted(report.status);
+      EXPECT_TRUE(done) << to_string(report.status) << " for want of memory";
+    } catch (const std::bad_alloc&) {
+      counting = false;
+      ASSERT_EQ(pack(state), before) << refused;
+    }
+    granted = kAll;
+    if (!done) ASSERT_TRUE(accepted(advance(model, workspace, state, {}, told).status)) << refused;
+    ASSERT_EQ(pack(state), after) << refused;
+  }
+  EXPECT_GT(refused, 50);
+}
+
 TEST(Memory, StatesStayWhereThereIsNoMore) {
   for (const int iterations : {1, 0}) {
     Scene scene = cable_block();
     scene.newton.iterations = iterations;
     const Model model = build(scene, read_block);
-    const State start = initial_state(model);
-    const std::vector<double> before = pack(start);
-    int refused = 0;
-    std::vector<double> after;
-    for (long pieces = 0; after.empty(); pieces += 1 + pieces / 4) {
-      Workspace workspace = make_workspace(model);
-      State state = start;
-      granted = pieces;
-      counting = true;
-      try {
-        advance(model, workspace, state);
-        counting = false;
-        after = pack(state);
-      } catch (const std::bad_alloc&) {
-        counting = false;
-        ++refused;
-        EXPECT_EQ(pack(state), before) << pieces;
-      }
-      granted = -1;
-      // And the workspace can be used again, as a new one.
-      if (!after.empty()) break;
-      Workspace other = make_workspace(model);
-      State again = start;
-      EXPECT_TRUE(accepted(advance(model, workspace, state).status)) << pieces;
-      EXPECT_TRUE(accepted(advance(model, other, again).status)) << pieces;
-      EXPECT_EQ(pack(state), pack(again)) << pieces;
-    }
-    EXPECT_GT(refused, 10);
+    expect_to_stay(model, initial_state(model));
   }
+}
+
+/// Also where there is a limit in the way, and the report lists it.
+TEST(Memory, StatesOfInverseStepsStayWhereThereIsNoMore) {
+  Scene scene = block();
+  const Vec3 tip(50 * mm, 5 * mm, 5 * mm);
+  add_target(scene, tip, 0.01);
+  const Model model = build(scene, block_of(300));
+  const Goal goal = {tip + 10 * mm * Vec3::UnitY()}, other = {tip - 10 * mm * Vec3::UnitY()};
+  State state = initial_state(model);
+  Workspace workspace = make_workspace(model);
+  const std::size_t one = advance(model, workspace, state, {}, {nullptr, &goal}).aim.binding.size();
+  state = initial_state(model);
+  EXPECT_EQ(one + advance(model, workspace, state, {}, {nullptr, &other}).aim.binding.size(), 2);
+  for (const Goal* own : {&goal, &other}) expect_to_stay(model, initial_state(model), {nullptr, own});
 }
 
 TEST(Memory, SolidsOfAllKindsAskForNone) {

@@ -43,9 +43,10 @@ template <class Real>
 bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* right) {
   for (Eigen::Index j = 0; j < minus_W_.cols(); ++j) minus_W_.col(j).tail(minus_W_.rows() - j).setZero();
   while (rooms_.size() < std::min(static_cast<std::size_t>(crew.size()), plan_->parts.size())) {
-    rooms_.emplace_back();
-    rooms_.back().updates.resize(plan_->part_updates + kLanesOf<Real>);
-    rooms_.back().spare = below_;
+    Room room;
+    room.updates.resize(plan_->part_updates + kLanesOf<Real>);
+    room.spare = below_;
+    rooms_.push_back(std::move(room));
   }
   if (right) begin(*right);
   if (crew.size() == 1) {  // updates are added while they are in the caches

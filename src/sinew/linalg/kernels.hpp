@@ -56,7 +56,7 @@ struct KernelsOf {
   void (*add)(const Real* from, int from_stride, int first, int end, const Run* runs, int count, Real* to,
               int to_stride, int shift);
 
-  /// y <- P^-1 y and x <- P^-T x with the square on top of a factored panel.
+  /// y <- P^-1 y (y: whole lanes) and x <- P^-T x with the square on top of a factored panel.
   void (*solve)(const Real* panel, int stride, int columns, Real* y);
   void (*solve_transposed)(const Real* panel, int stride, int columns, Real* x);
 

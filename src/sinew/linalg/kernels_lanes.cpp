@@ -358,8 +358,9 @@ bool factor_panel(Real* panel, int stride, int columns, int height, const Profil
 #pragma GCC unroll 4
       for (int p = 0; p < kSlices; ++p) {
         Real* const to = block + static_cast<long>(j) * stride + p * kSlice;
-        const Slice own = load_slice(square.back[j] + p * kSlice);
-        store_slice(to, count == kBlock || numbered(p) < count ? own : load_slice(to));
+        Slice own = load_slice(square.back[j] + p * kSlice);
+        if (count < kBlock) own = numbered(p) < count ? own : load_slice(to);
+        store_slice(to, own);
       }
     }
   }
@@ -496,7 +497,7 @@ void multiply_transposed(const Real* A, int stride, int height, int columns, con
   for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
 }
 
-/// x <- P^-1 x, or P^-T x, with a square on the diagonal, whose columns are the rows of P^-1; x has kBlock numbers.
+/// x <- P^-1 x, or P^-T x, with a square on the diagonal, whose columns are the rows of P^-1.
 template <bool transposed>
 void divide_by_square(const Real* block, int stride, int count, Real* x) {
   Real out[kBlock];
@@ -523,7 +524,7 @@ void divide_by_square(const Real* block, int stride, int count, Real* x) {
   for (int i = 0; i < count; ++i) x[i] = out[i];
 }
 
-// Blocks on the diagonal one by one; y and x have whole lanes.
+// Blocks on the diagonal one by one.
 void solve(const Real* panel, int stride, int columns, Real* y) {
   for (int first = 0; first < columns; first += kBlock) {
     const int end = first + kBlock < columns ? first + kBlock : columns;

@@ -37,20 +37,23 @@ void Surfaces::fit(const Collider& own, const Moment& now) {
   if (static_cast<int>(all.size()) <= own.number) all.resize(static_cast<std::size_t>(own.number) + 1);
   Surface& surface = all[static_cast<std::size_t>(own.number)];
   if (!surface.mesh) {
-    surface.mesh = mesh_of(now.model, own);
-    if (!surface.mesh) return;
-    surface.faces = surface.mesh->faces;
-    surface.edges = surface.mesh->edges;
+    const auto mesh = mesh_of(now.model, own);
+    if (!mesh) return;
+    surface.faces = mesh->faces;
+    surface.edges = mesh->edges;
+    surface.mesh = mesh;  // last, as the pose below: memory may run out
   }
-  if (is_rigid(own)) {
-    const contact::Pose pose = now.pose(own);
-    if (surface.pose && surface.pose->R == pose.R && surface.pose->p == pose.p) return;
-    surface.pose = pose;
-    surface.x = (pose.R * surface.mesh->points).colwise() + pose.p;
-  } else {
+  if (!is_rigid(own)) {
     surface.x = now.state.solids[own.number].x;
+    fit_boxes(surface);
+    return;
   }
+  const contact::Pose pose = now.pose(own);
+  if (surface.pose && surface.pose->R == pose.R && surface.pose->p == pose.p) return;
+  surface.pose.reset();
+  surface.x = (pose.R * surface.mesh->points).colwise() + pose.p;
   fit_boxes(surface);
+  surface.pose = pose;
 }
 
 void Surfaces::fit(const Moment& now) {

@@ -134,13 +134,13 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
 }
 
 void FreeMotion::plan(const SolidModel& model) {
-  factor_.emplace(model.fronts);
   const std::vector<int>& place = model.fronts->border;
   kept_.resize(3 * model.rows.size());
   std::iota(kept_.begin(), kept_.end(), 0);
   std::sort(kept_.begin(), kept_.end(), [&place](int a, int b) { return place[a] < place[b]; });
   kept_places_.resize(static_cast<Eigen::Index>(kept_.size()));
   std::transform(kept_.begin(), kept_.end(), kept_places_.begin(), [&place](int own) { return place[own]; });
+  factor_.emplace(model.fronts);  // last: memory may run out
 }
 
 int FreeMotion::row_of(const SolidModel& model, const Model& whole, int border_row) {

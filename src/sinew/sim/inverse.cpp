@@ -53,6 +53,7 @@ constexpr auto kRows = static_cast<Eigen::Index>(kKinds.size());
 void Inverse::begin(const Model& model, const State& start, const Goal& goal, double h) {
   goal_ = goal;
   h_ = h;
+  reach = INFINITY;
   binding_.clear();
   dropped_.clear();
   penalty_.setZero(kRows * static_cast<Eigen::Index>(model.sought.size()));
@@ -370,9 +371,7 @@ StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& go
   for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
   NewtonRules rules = step_rules(model, effort);
   rules.inverse = &memory.inverse;
-  StepReport report = step_by(rules, memory, memory.command, h, state);
-  if (accepted(report.status)) report.aim = memory.inverse.aim(model, state);
-  return report;
+  return step_by(rules, memory, memory.command, h, state);
 }
 
 namespace {
@@ -473,8 +472,8 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   StepReport report = at.report;
   report.newton = spent.newton;
   report.times = spent.times;
+  report.aim = inverse.aim(model, at.next);
   state = std::move(at.next);
-  report.aim = inverse.aim(model, state);
   return report;
 }
 

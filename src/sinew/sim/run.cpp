@@ -27,8 +27,9 @@ void scene_command(const Model& model, const State& state, double time, Command&
 
 /// Takes what a step by value gives.
 StepReport taken(StepResult result, State& state) {
-  if (accepted(result.report.status)) state = std::move(result.next);
-  return result.report;
+  StepReport report = std::move(result.report);
+  if (accepted(report.status)) state = std::move(result.next);
+  return report;
 }
 
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
@@ -41,11 +42,12 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const double whole = on_grid ? h : to - state.time;
   Command& command = workspace.memory().command;
   Goal goal;
-  StepReport report, earlier;
+  StepReport earlier;
   // Half steps are fractions of the grid's, whatever is left of it after earlier ones.
   for (int halvings = 0; halvings <= kHalvings; ++halvings) {
     const double part = std::ldexp(h, -halvings);
     if (part > whole * (1.0 + 1e-9)) continue;  // already tried, from further back
+    StepReport report;
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
@@ -70,13 +72,14 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     report.times += earlier.times;
     report.contact.sweeps += earlier.contact.sweeps;
     report.contact.newton += earlier.contact.newton;
-    earlier = report;
-    if (!accepted(report.status)) continue;
-    state.time = time;
-    if (lands) ++state.grid;
-    return report;
+    if (accepted(report.status)) {
+      state.time = time;
+      if (lands) ++state.grid;
+      return report;
+    }
+    earlier = std::move(report);
   }
-  return report;
+  return earlier;
 }
 
 }  // namespace

@@ -91,6 +91,9 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
     // What is prescribed stands in the context already.
     report = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
     report.times.contact += spent;
+    // (Before the state moves: from then on nothing asks for memory.)
+    if (rules.inverse && accepted(report.status))
+      report.aim = rules.inverse->aim(memory.context.model, memory.iterate.state);
   }
   if (accepted(report.status)) std::swap(state, memory.iterate.state);
   return report;

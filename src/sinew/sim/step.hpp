@@ -148,7 +148,8 @@ struct Effort {
   bool converged = false;  ///< until the tolerance is met, whatever the scene's `newton` says
 };
 
-/// Advances a state by h [s]. On failure it stays as it is. After the first step of a model no memory is asked for
+/// Advances a state by h [s]. On failure it stays as it is; while the step runs nobody may read it, as it stands
+/// elsewhere then. After the first step of a model no memory is asked for
 /// where Newton's steps need no fallback.
 StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
                 Effort effort = {});

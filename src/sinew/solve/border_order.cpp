@@ -29,8 +29,8 @@ void gather(const CoupledProblem& problem, std::vector<int>& pattern) {
     pattern.push_back(static_cast<int>(at.size()));
     pattern.insert(pattern.end(), at.begin(), at.end());
   };
-  pattern.push_back(static_cast<int>(problem.r.size()));
-  pattern.push_back(static_cast<int>(problem.c.size()));
+  for (const auto size : {problem.r.size(), problem.c.size()}) pattern.push_back(static_cast<int>(size));
+  for (const auto count : {problem.volumes.size(), problem.chains.size()}) pattern.push_back(static_cast<int>(count));
   for (const Entries* own : {&problem.B, &problem.G, &problem.W}) add_entries(*own);
   for (const VolumePart& volume : problem.volumes) add(volume.at);
   for (const ChainPart& part : problem.chains) {

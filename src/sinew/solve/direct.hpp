@@ -8,6 +8,7 @@
 
 #include "sinew/linalg/symmetric_factor.hpp"
 #include "sinew/solve/border_order.hpp"
+#include "sinew/solve/coupled_problem.hpp"
 
 namespace sinew::solve {
 

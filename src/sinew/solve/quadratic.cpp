@@ -93,10 +93,14 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
   x = -g;
   factor_.solveInPlace(x);
   // Violations are compared in units of what their row moves by: |L^-1 n|, the steepness of its limit.
+  scale_.setConstant(rows, -1.0);  // not known yet
   const auto steepness = [&](int row) {
-    half_ = rows_.col(row);
-    factor_.matrixL().solveInPlace(half_);
-    return half_.norm();
+    if (scale_[row] < 0.0) {
+      half_ = rows_.col(row);
+      factor_.matrixL().solveInPlace(half_);
+      scale_[row] = half_.norm();
+    }
+    return scale_[row];
   };
   const double size = std::sqrt(std::abs(g.dot(x)));  // |L^T x|: how far the unbounded least is, in the same units
   const int limit = 100 + 20 * (rows + static_cast<int>(x.size()));

@@ -54,7 +54,7 @@ class Quadratic {
   std::vector<Limit> active_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
   Eigen::MatrixXd rows_, Q_, R_;  ///< A^T; Q R = L^-1 times the normals of active limits
-  Eigen::VectorXd values_, normal_, half_, along_, give_, pulls_;
+  Eigen::VectorXd scale_, values_, normal_, half_, along_, give_, pulls_;
   int iterations_ = 0;
 };
 
