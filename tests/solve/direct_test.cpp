@@ -127,6 +127,20 @@ CoupledProblem chained(bool symmetric) {
   return p;
 }
 
+/// Rows that give way by themselves, each holding one unknown, in their order or the other way round.
+CoupledProblem paired(bool reversed) {
+  constexpr int kPairs = 24;
+  CoupledProblem p;
+  for (int i = 0; i < kPairs; ++i) {
+    p.B.add(i, i, 1.0 + 0.1 * i);
+    p.W.add(i, i, 1.0 + 0.2 * i);
+    p.G.add(i, reversed ? kPairs - 1 - i : i, 2.0 - 0.05 * i);
+  }
+  p.r = waves(kPairs, 1, 0.5);
+  p.c = waves(kPairs, 1, 0.9);
+  return p;
+}
+
 /// One solver after the other problem, whose numbers stand elsewhere, or are more, or fewer.
 TEST(Direct, a_solver_is_used_again_for_other_patterns) {
   CoupledProblem moved = problem(7, 5), more = problem(7, 5);
@@ -141,7 +155,8 @@ TEST(Direct, a_solver_is_used_again_for_other_patterns) {
   more.W.add(3, 3, 1e-3);
   more.W.add(4, 4, 1e-3);
   CoupledFactor factor;
-  const std::vector<CoupledProblem> problems = {problem(7, 5), moved, more, chained(true), problem(3, 2), moved};
+  const std::vector<CoupledProblem> problems = {problem(7, 5), moved, more,          chained(true),
+                                                problem(3, 2), moved, paired(false), paired(true)};
   for (const CoupledProblem& own : problems) {
     factor.eliminate_chains(own);
     factor.factor();
