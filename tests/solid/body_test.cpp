@@ -283,6 +283,7 @@ TEST_P(EveryBody, mass_adds_up_and_free_fall_is_the_backward_euler_recurrence) {
     const double h = 0.01;
     const Vec3 g(0, -9.81, 0), v0(0.3, 0.2, 0.1);
     const Eigen::Matrix3Xd v = v0.replicate(1, own.nodes());
+    EXPECT_NEAR(kinetic_energy(own, v), 0.5 * own.masses.sum() * v0.squaredNorm(), 1e-14 * own.masses.sum());
     const StepStart start{own.rest, v, 1.0 / h};
     const Eigen::Matrix3Xd x = own.rest.colwise() + h * (v0 + h * g);
     double scale = 0.0;

@@ -98,7 +98,7 @@ void FrontPanels<Real>::start_panel(const Front& front, const HalfSolve* right) 
     panel[front.right() + j * stride] = static_cast<Real>(right->y[front.first + j]);
 }
 
-/// What has become of a right side in a front: its row is (S y)^T, and u grows by P_h y.
+/// What has become of a right side in a front: its row is (S y)^T, and -u shrinks by P_h y.
 template <class Real>
 void FrontPanels<Real>::take_right(const Front& front, Vector& spare, const HalfSolve& right) {
   const Real* const panel = panels_.data() + front.panel;

@@ -74,8 +74,8 @@ class FrontPanels {
   Eigen::VectorXd diagonal_;
   Vector pivots_, signs_;
   Matrix minus_W_;  ///< -H A^-1 H^T below its diagonal, in the order of the plan
-  mutable Vector own_, below_, whole_,
-      bordering_;  ///< room for solves: one thread at a time (`factor` adds to the last by parts)
+  /// Room for solves: one thread at a time (`factor` adds to the last by parts). The last holds -u.
+  mutable Vector own_, below_, whole_, bordering_;
 };
 
 extern template class FrontPanels<float>;

@@ -28,15 +28,15 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
 /// Woodbury's formula S then becomes S V, V = 1 - Y N (1 + Y^T S Y N)^-1 Y^T S with Y = R P.
 class FreeMotion {
  public:
-  /// Puts A together, at the iterate that these are the forces of, and factors it; `volume` receives W. False where A
-  /// cannot be factored.
+  /// Puts A together, at the iterate that these are the forces of, and factors it; `volume` receives W. What the forces
+  /// leave unbalanced is half solved on the way, as one more row. False where A cannot be factored.
   bool factor(const StepContext& context, const State& iterate, int number, const SolidForces& forces,
               solid::Tangent kind, threads::Crew& crew, StageTimes& times, solve::VolumePart& volume);
   double stiffness() const { return factor_->largest_diagonal(); }  ///< [N/m] largest diagonal entry of A
   int negative() const { return factor_->negative(); }  ///< eigenvalues of A: 0 where the volume by itself is stable
 
-  /// Solves the first half for a force over the unknowns, or takes it for what the forces that `factor` was given leave
-  /// unbalanced. H dx, without dlambda, is added to the violations c.
+  /// Takes the first half for what the forces that `factor` was given leave unbalanced, or solves it for a force over
+  /// the unknowns. H dx, without dlambda, is added to the violations c.
   void push_own(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
   void push(const SolidModel& model, const Model& whole, const Eigen::VectorXd& force, Eigen::VectorXd& c);
   /// Motion [m] of the volume's watched points, three numbers each: that of the push, and what multipliers add.
@@ -79,6 +79,8 @@ class FreeMotion {
   /// V y.
   const Eigen::VectorXd& with_rim(const Eigen::VectorXd& y);
 
+  // Border rows are those of the model's couplings, three each, then of watched points: so stand rows_ and free_. The
+  // factor keeps them in an order of its own, Fronts::border: so stand W and watched_. c and dlambda are the scene's.
   std::optional<linalg::SparseFactor> factor_;
   std::vector<int> kept_;        ///< border rows that are rows of the scene, in the order in which they are kept
   Eigen::VectorXi kept_places_;  ///< and their places in that order

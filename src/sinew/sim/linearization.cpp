@@ -30,7 +30,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   iterate_ = &iterate;
   times_ = &times;
   rotated_ = coupled_ = stalled_ = false;
-  ahead_ = then.has_value();
+  ahead_ = then;
   const std::size_t solids = context.model.solids.size();
   forces_.resize(solids);
   free_.resize(solids);
@@ -88,7 +88,7 @@ bool Linearization::finite() const {
 }
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
-  if (!ahead_) {
+  if (ahead_ != kind) {
     beside([&](std::size_t i, StageTimes& own) { factor_solid(i, kind, own); },
            [&](StageTimes& own) {
              const Clock clock(own.solve);

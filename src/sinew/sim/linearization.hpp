@@ -133,7 +133,8 @@ class Linearization {
   std::vector<SolidForces> forces_;
   Reduced reduced_;
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;
-  bool ahead_ = false, rotated_ = false, coupled_ = false, stalled_ = false;
+  std::optional<solid::Tangent> ahead_;  ///< volumes and chains are factored, with this one
+  bool rotated_ = false, coupled_ = false, stalled_ = false;
   int negative_ = 0;  ///< eigenvalues of the volumes' tangents
   enum class Factored { failed, as_told, definite };
   std::vector<Factored> factored_;  ///< each volume

@@ -74,6 +74,8 @@ struct Memory {
 /// the iterate is where it ended.
 StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules, Iterate& iterate);
 
+// Of time steps (step.cpp):
+
 /// How the scene wants its steps made, or whoever makes them.
 NewtonRules step_rules(const Model& model, const Effort& effort);
 
@@ -83,6 +85,8 @@ double begin_step(Memory& memory, const Command& command, double h);
 
 /// One step of h from a state to a command, by these rules: `step`, `inverse_step`. On failure the state stays.
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state);
+
+// And of paths:
 
 /// What changes of an equilibrium as t grows: the tangent K u' = -dr/dt of the path, into Memory::change. Memory::here
 /// stands there and is factored, and `increment` is what it gives.

@@ -146,7 +146,7 @@ EnergyBalance energy_balance(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     const solid::Body& body = model.solids[i].body;
     const SolidState& own = state.solids[i];
-    balance.kinetic += 0.5 * own.v.cwiseProduct(own.v * body.mass).sum();
+    balance.kinetic += solid::kinetic_energy(body, own.v);
     balance.elastic += solid::elastic_energy(body, own.x);
     balance.weight -= g.dot((own.x - body.rest) * body.masses);
     const Eigen::Matrix3Xd& springs = model.solids[i].springs;

@@ -6,7 +6,7 @@
 
 namespace sinew {
 
-/// The same for all iterations of a step.
+/// The same for all iterations of a step, but for `at_start` and commands that are looked for.
 struct StepContext {
   explicit StepContext(const Model& of) : model(of) {}
   /// Memory of an earlier step is used again.

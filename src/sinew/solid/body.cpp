@@ -272,6 +272,8 @@ Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x) {
   return force;
 }
 
+double kinetic_energy(const Body& body, const Eigen::Matrix3Xd& v) { return 0.5 * v.cwiseProduct(v * body.mass).sum(); }
+
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x) {
   double energy = 0.0;
   ElementResponse response;

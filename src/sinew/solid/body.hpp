@@ -90,6 +90,9 @@ Eigen::Matrix3Xd elastic_force(const Body& body, const Eigen::Matrix3Xd& x);
 /// Elastic energy [J]; infinite where an element's law ends (turned inside out, and not made for it).
 double elastic_energy(const Body& body, const Eigen::Matrix3Xd& x);
 
+/// Kinetic energy [J] of node velocities v [m/s], 3 x n: v^T M v / 2.
+double kinetic_energy(const Body& body, const Eigen::Matrix3Xd& v);
+
 /// Where a body is, as forces and tangent both need it first: records of the nodes and one more (see TetKernels), and
 /// what the batches make of them.
 struct Deformation {

@@ -57,9 +57,9 @@ struct ChainPart {
 ///     G dz - W dlambda   + (chains) =  c        constraints: c + H dx = G dz + ..., with volumes moving by
 ///                                               dx = dx_free + A_x^-1 H^T dlambda
 /// so W = H A_x^-1 H^T and c is the violation after the free motion. Whoever puts the problem together leaves c before
-/// it; the motion is added to a RightSide (`sim/free_motion` `push`). Eliminating the chains adds the rods' share to W:
-/// the paper's (11), (12). What remains, the border, needs no inverse of B, which is singular for a straight cable
-/// whose abscissae are unknown, and indefinite under tension.
+/// it; the motion is added to a RightSide (`sim/free_motion` `push_own`). Eliminating the chains adds the rods' share
+/// to W: the paper's (11), (12). What remains, the border, needs no inverse of B, which is singular for a straight
+/// cable whose abscissae are unknown, and indefinite under tension.
 struct CoupledProblem {
   Entries B, G;
   std::vector<VolumePart> volumes;  ///< W: the sum of theirs ...

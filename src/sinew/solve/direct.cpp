@@ -11,8 +11,11 @@ namespace {
 using linalg::Matrix6X;
 using linalg::Vec6;
 
-/// A solution is good enough with such a residual, and refined while it is larger than the first (expected: the last).
-constexpr double kAimed = 2e-13, kSymmetric = 1e-11, kTolerance = 1e-9, kSingular = 1e-6, kExpected = 2e-15;
+constexpr double kAimed = 2e-13;      ///< residual that solutions are refined to ...
+constexpr double kExpected = 2e-15;   ///< ... and that is not looked at where it is expected
+constexpr double kSymmetric = 1e-11;  ///< residual that is good enough: of the symmetric factor, or an LU takes over;
+constexpr double kTolerance = 1e-9;   ///< of the LU, or chains join the border;
+constexpr double kSingular = 1e-6;    ///< of the smallest solution of a singular border
 /// A compliance smaller than this part of the largest one counts as none.
 constexpr double kVanished = 1e-10;
 

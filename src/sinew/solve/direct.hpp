@@ -27,7 +27,7 @@ struct CoupledSolution {
   std::vector<Eigen::VectorXd> dq;  ///< strains of each chain
   bool ok = false;                  ///< finite, and the equations hold to rounding
   bool redundant = false;           ///< rows depended on each other; the multipliers returned are the smallest that do
-  double residual = 0.0;            ///< largest relative residual of the scaled equations
+  double residual = 0.0;  ///< largest relative residual of the scaled equations, or what a small correction leaves
 
   /// Adds the unknowns of another solution.
   CoupledSolution& operator+=(const CoupledSolution& other);
