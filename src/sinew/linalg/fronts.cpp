@@ -325,6 +325,30 @@ void add_parts(Fronts& plan) {
   for (const int root : uncut) plan.parts.push_back({first[root], root + 1});
 }
 
+/// Where updates of a part begin, but for its root's. What a front's children leave lies at one end of the room, what
+/// it leaves itself at the other, so that each end is a stack, and no room is lost between them.
+void add_room(const Fronts::Part& part, Fronts& plan) {
+  std::vector<bool> far(static_cast<std::size_t>(part.end - part.first), false);  // at the end of the room
+  std::size_t near_taken = 0, far_taken = 0, most = 0;
+  const auto taken = [&](bool at_end) -> std::size_t& { return at_end ? far_taken : near_taken; };
+  for (int s = part.end - 2; s >= part.first; --s)
+    far[static_cast<std::size_t>(s - part.first)] = !far[static_cast<std::size_t>(plan.fronts[s].parent - part.first)];
+  for (int s = part.first; s + 1 < part.end; ++s) {
+    Front& front = plan.fronts[s];
+    const bool own = far[static_cast<std::size_t>(s - part.first)];
+    front.in_part = true;
+    front.update = taken(own);
+    taken(own) += update_size(front);
+    most = std::max(most, near_taken + far_taken);
+    for (const int child : plan.children_of(front)) taken(!own) -= update_size(plan.fronts[child]);
+  }
+  for (int s = part.first; s + 1 < part.end; ++s) {
+    Front& front = plan.fronts[s];
+    if (far[static_cast<std::size_t>(s - part.first)]) front.update = most - front.update - update_size(front);
+  }
+  plan.part_updates = std::max(plan.part_updates, most);
+}
+
 /// Where panels and updates begin. Parts can be done at one time: each in a room like that of any other, but for the
 /// updates of their roots, which wait for their parents.
 void add_places(Fronts& plan) {
@@ -342,21 +366,15 @@ void add_places(Fronts& plan) {
     plan.panels += static_cast<std::size_t>(front.stride) * static_cast<std::size_t>(front.columns);
   }
   Room shared;
-  const auto place = [&plan](Front& front, Room& own, Room& of_children) {
-    front.update = own.take(update_size(front));
-    for (const int child : plan.children_of(front))
-      of_children.give_back(plan.fronts[child].update, update_size(plan.fronts[child]));
-  };
   for (const Fronts::Part& part : plan.parts) {
-    Room room;
-    for (int s = part.first; s + 1 < part.end; ++s) {
-      plan.fronts[s].in_part = true;
-      place(plan.fronts[s], room, room);
-    }
-    place(plan.fronts[part.end - 1], shared, room);
-    plan.part_updates = std::max(plan.part_updates, room.end());
+    plan.fronts[part.end - 1].update = shared.take(update_size(plan.fronts[part.end - 1]));
+    add_room(part, plan);
   }
-  for (const int s : plan.top) place(plan.fronts[s], shared, shared);
+  for (const int s : plan.top) {
+    plan.fronts[s].update = shared.take(update_size(plan.fronts[s]));
+    for (const int child : plan.children_of(plan.fronts[s]))
+      shared.give_back(plan.fronts[child].update, update_size(plan.fronts[child]));
+  }
   plan.updates = shared.end();
 }
 
