@@ -23,6 +23,12 @@ void each_load(const StepContext& context, int number, const Visit& visit) {
   }
 }
 
+/// Some numbers of a vector, in the memory of earlier ones (an indexed view of Eigen's would copy the indices).
+void pick(const Eigen::VectorXd& from, const std::vector<int>& at, Eigen::VectorXd& picked) {
+  picked.resize(static_cast<Eigen::Index>(at.size()));
+  for (Eigen::Index i = 0; i < picked.size(); ++i) picked[i] = from[at[i]];
+}
+
 bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
 
 }  // namespace
@@ -214,8 +220,7 @@ void FreeMotion::watched_motion(const SolidModel& model, const Model& whole, con
                                 bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
   if (model.watched.empty()) return;
   gather(model, whole, dlambda);
-  acting_.resize(watched_.rows());
-  for (Eigen::Index j = 0; j < acting_.size(); ++j) acting_[j] = rows_[kept_[j]];
+  pick(rows_, kept_, acting_);
   for (std::size_t k = 0; k < model.watched.size(); ++k) {
     const auto first = static_cast<Eigen::Index>(3 * k), own = static_cast<Eigen::Index>(3 * model.rows.size()) + first;
     auto moved = motion.segment<3>(3 * model.watched[k]);
@@ -294,15 +299,14 @@ double FreeMotion::leave(const SolidModel& model, const Model& whole, const solv
   gather(model, whole, dlambda);
   solid::at_unknowns(model.body, dx, x_);
   const auto rows = static_cast<Eigen::Index>(kept_.size());
-  half_.resize(2 * rows);
-  auto acting = half_.head(rows), moved = half_.tail(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) acting[i] = rows_[kept_[i]];
+  pick(rows_, kept_, acting_);
+  half_.resize(rows);
   if (volume.symmetric) {
-    moved.noalias() = volume.W.selfadjointView<Eigen::Lower>() * acting;
+    half_.noalias() = volume.W.selfadjointView<Eigen::Lower>() * acting_;
   } else {
-    moved.noalias() = volume.W.lazyProduct(acting);
+    half_.noalias() = volume.W.lazyProduct(acting_);
   }
-  for (Eigen::Index i = 0; i < rows; ++i) free_[kept_[i]] += moved[i];
+  for (Eigen::Index i = 0; i < rows; ++i) free_[kept_[i]] += half_[i];
   for (const int k : kept_) {
     double motion = 0.0;
     for (int at = model.border.outerIndexPtr()[k]; at < model.border.outerIndexPtr()[k + 1]; ++at) {

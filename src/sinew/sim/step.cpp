@@ -58,7 +58,6 @@ double begin_step(Memory& memory, const Command& command, double h) {
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.here);
-  if (memory.context.model.pairs.empty()) return 0.0;
   double spent = 0.0;
   {
     const Clock clock(spent);
