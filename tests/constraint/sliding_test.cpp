@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -106,6 +107,23 @@ TEST(Sliding, projection_follows_a_point_around_the_bend_and_past_both_ends) {
     const rod::CurvePoint tip = rod::curve_point(shape, 0.1);  // beyond it, straight on
     s = project(shape, s, t <= 0.1 ? rod::position(shape, t) : Vec3(tip.position + (t - 0.1) * tip.derivative));
     EXPECT_NEAR(s, t, 1e-10);
+  }
+}
+
+// Wherever it starts from on its branch, and however far from the rod the point is.
+TEST(Sliding, projection_is_exact_to_rounding) {
+  for (const std::vector<int>& basis : {std::vector{2}, std::vector{0, 1, 2}, std::vector{0, 1, 2, 3, 4, 5}}) {
+    const rod::Rod rod = bent_rod(basis);
+    const rod::Configuration shape = rod::configure(rod, kBase, coordinates(rod, 10.0));
+    for (const double s : {0.013, 0.055, 0.093}) {
+      for (const double off : {0.0, 1e-6, 1e-3, 1e-2}) {
+        const rod::CurvePoint at = rod::curve_point(shape, s);
+        const Vec3 P = at.position + off * at.derivative.cross(Vec3(0.3, -0.5, 0.8)).normalized();
+        for (const double before : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 4e-3, -4e-3})
+          EXPECT_NEAR(project(shape, s + before, P), s, 2e-15)
+              << basis.size() << " " << s << " " << off << " " << before;
+      }
+    }
   }
 }
 

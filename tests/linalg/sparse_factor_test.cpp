@@ -86,6 +86,50 @@ TEST(SparseFactor, LargeBodiesFillInLessThanByMinimumDegreeAndSmallOnesNoMore) {
   }
 }
 
+TEST(SparseFactor, GivesPartsOfTheComplianceInTheOrderTheyAreKeptIn) {
+  const Matrix A = grid(4);
+  SparseFactor::Rows H(7, A.cols());
+  for (int i = 0; i < 7; ++i) {
+    H.insert(i, 8 * i) = 1.0 + i;
+    H.insert(i, 8 * i + 1) = -0.5;
+  }
+  H.makeCompressed();
+  for (const Precision precision : {Precision::float64, Precision::float32}) {
+    SparseFactor factor(SparseFactor::make_plan(A, H, {}, precision));
+    ASSERT_TRUE(factor.factor(A, H));
+    const Eigen::MatrixXd W = factor.compliance();
+    const double tolerance = precision == Precision::float64 ? 1e-12 : 1e-5;
+    EXPECT_LT((W - Eigen::MatrixXd(H) * dense(A).ldlt().solve(Eigen::MatrixXd(H).transpose())).norm(),
+              tolerance * W.norm());
+    Eigen::VectorXi row(7);  // at each place
+    for (int i = 0; i < 7; ++i) row[factor.plan().border[static_cast<std::size_t>(i)]] = i;
+    Eigen::VectorXd column;
+    for (int place = 0; place < 7; ++place) {
+      factor.kept_column(place, column);
+      for (int i = 0; i < 7; ++i) EXPECT_EQ(column[i], W(row[i], row[place]));
+    }
+    for (const std::vector<int>& places : {std::vector{0, 1, 2, 3, 4, 5, 6}, std::vector{1, 2, 5}, std::vector{6},
+                                           std::vector{0, 2, 4, 6}, std::vector<int>{}}) {
+      std::vector<linalg::Run> runs;
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        if (k > 0 && places[k] == places[k - 1] + 1) {
+          ++runs.back().length;
+        } else {
+          runs.push_back({places[k], static_cast<int>(k), 1});
+        }
+      }
+      Eigen::MatrixXd part;
+      factor.kept_compliance(runs, part);
+      ASSERT_EQ(part.rows(), static_cast<Eigen::Index>(places.size()));
+      for (std::size_t j = 0; j < places.size(); ++j) {
+        for (std::size_t i = j; i < places.size(); ++i)
+          EXPECT_EQ(part(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)),
+                    W(row[places[i]], row[places[j]]));
+      }
+    }
+  }
+}
+
 TEST(SparseFactor, MassesWithoutNeighboursAreNoObstacle) {
   const Matrix A = structure(3, {{0, -1, 1.0}, {1, -1, 2.0}, {2, -1, 4.0}});
   SparseFactor factor(SparseFactor::make_plan(A));

@@ -179,6 +179,24 @@ void FrontPanels<Real>::add_children(const Front& front, Real* room, bool to_pan
   }
 }
 
+// In several lanes, which do not wait for each other.
+template <class Real>
+typename FrontPanels<Real>::Pivots FrontPanels<Real>::pivots() const {
+  using Lanes = Eigen::Array<Real, kLanes, 1>;
+  Lanes least = Lanes::Constant(std::numeric_limits<Real>::infinity()), signs = Lanes::Zero();
+  int at = 0;
+  for (; at + kLanes <= size(); at += kLanes) {
+    least = least.min(Lanes::Map(pivots_.data() + at).abs());
+    signs += Lanes::Map(signs_.data() + at);
+  }
+  Real smallest = least.minCoeff(), sum = signs.sum();
+  for (; at < size(); ++at) {
+    smallest = std::min(smallest, std::abs(pivots_[at]));
+    sum += signs_[at];
+  }
+  return {static_cast<double>(smallest), static_cast<int>((static_cast<Real>(size()) - sum) / 2)};
+}
+
 template <class Real>
 void FrontPanels<Real>::half_solve(const HalfSolve& right) const {
   begin(right);
@@ -240,11 +258,27 @@ void FrontPanels<Real>::back_solve(const Eigen::VectorXd& y, const Eigen::Vector
 }
 
 template <class Real>
-void FrontPanels<Real>::kept_compliance(Eigen::MatrixXd& W) const {
-  const Eigen::Index n = borders();
+void FrontPanels<Real>::kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const {
+  const Eigen::Index n = rows.empty() ? 0 : rows.back().into + rows.back().length;
   W.resize(n, n);
-  for (Eigen::Index j = 0; j < n; ++j)
-    W.col(j).tail(n - j) = -minus_W_.col(j).segment(j, n - j).template cast<double>();
+  for (std::size_t at = 0; at < rows.size(); ++at) {
+    const Run& own = rows[at];
+    for (int j = 0; j < own.length; ++j) {
+      const auto from = minus_W_.col(own.row + j);
+      auto to = W.col(own.into + j);
+      to.segment(own.into + j, own.length - j) = -from.segment(own.row + j, own.length - j).template cast<double>();
+      for (const Run& other : rows.subspan(at + 1))
+        to.segment(other.into, other.length) = -from.segment(other.row, other.length).template cast<double>();
+    }
+  }
+}
+
+template <class Real>
+void FrontPanels<Real>::kept_column(int place, Eigen::VectorXd& column) const {
+  column.resize(borders());
+  column.head(place) = -minus_W_.row(place).head(place).transpose().template cast<double>();
+  const Eigen::Index below = borders() - place;
+  column.tail(below) = -minus_W_.col(place).segment(place, below).template cast<double>();
 }
 
 template <class Real>

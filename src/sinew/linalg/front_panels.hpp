@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sinew/linalg/aligned.hpp"
@@ -32,15 +33,19 @@ class FrontPanels {
   bool factor(const AlignedVector<double>& values, const std::vector<double>& border_values, threads::Crew& crew,
               const HalfSolve* right);
   static double rounding() { return static_cast<double>(std::numeric_limits<Real>::epsilon()); }
-  /// Its size.
-  double smallest_pivot() const { return static_cast<double>(pivots_.cwiseAbs().minCoeff()); }
-  int negative() const { return static_cast<int>((pivots_.array() < Real(0)).count()); }
+  /// What became of the pivots.
+  struct Pivots {
+    double smallest = 0.0;  ///< its size
+    int negative = 0;
+  };
+  Pivots pivots() const;
   const Eigen::VectorXd& diagonal() const { return diagonal_; }  ///< of A, its size, in the order of elimination
   Eigen::VectorXd signs() const { return signs_.template cast<double>(); }
 
   void half_solve(const HalfSolve& right) const;
   void back_solve(const Eigen::VectorXd& y, const Eigen::VectorXd* u, Eigen::VectorXd& x) const;
-  void kept_compliance(Eigen::MatrixXd& W) const;
+  void kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const;
+  void kept_column(int place, Eigen::VectorXd& column) const;
   void border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const;
   void add_border_transposed(const Eigen::VectorXd& u, Eigen::VectorXd& y) const;
 

@@ -468,7 +468,7 @@ void totals(const Register (&v)[4], Real* sums) {
 /// `tail`: what is left of y after its whole registers, and zeros.
 template <int count>
 void dots(const Real* A, int stride, int height, const Real* y, const Lanes& tail, Real* x) {
-  Lanes sum[count] = {};
+  Lanes sum[4] = {};
   int at = 0;
   for (; at + kWidth <= height; at += kWidth) {
     const Lanes own = load(y + at);
@@ -479,12 +479,8 @@ void dots(const Real* A, int stride, int height, const Real* y, const Lanes& tai
 #pragma GCC unroll 4
     for (int k = 0; k < count; ++k) sum[k] += load(A + static_cast<long>(k) * stride + at) * tail;
   }
-  Real sums[count];
-  if constexpr (count == 4) {
-    totals(sum, sums);
-  } else {
-    for (int k = 0; k < count; ++k) sums[k] = total(sum[k]);
-  }
+  Real sums[4];
+  totals(sum, sums);
   for (int k = 0; k < count; ++k) x[k] -= sums[k];
 }
 
@@ -494,7 +490,12 @@ void multiply_transposed(const Real* A, int stride, int height, int columns, con
   const Lanes tail = load(left);
   int k = 0;
   for (; k + 4 <= columns; k += 4) dots<4>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
-  for (; k < columns; ++k) dots<1>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
+  const auto rest = [&]<int count>() {
+    dots<count>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
+  };
+  if (columns - k == 3) rest.template operator()<3>();
+  if (columns - k == 2) rest.template operator()<2>();
+  if (columns - k == 1) rest.template operator()<1>();
 }
 
 /// x <- P^-1 x, or P^-T x, with a square on the diagonal, whose columns are the rows of P^-1.
@@ -538,7 +539,7 @@ void solve_transposed(const Real* panel, int stride, int columns, Real* x) {
   for (int first = (columns - 1) / kBlock * kBlock; first >= 0; first -= kBlock) {
     const int end = first + kBlock < columns ? first + kBlock : columns;
     const Real* block = panel + static_cast<long>(first) * (stride + 1);
-    multiply_transposed(block + (end - first), stride, columns - end, end - first, x + end, x + first);
+    if (end < columns) multiply_transposed(block + kBlock, stride, columns - end, kBlock, x + end, x + first);
     divide_by_square<true>(block, stride, end - first, x + first);
   }
 }

@@ -108,9 +108,11 @@ bool SparseFactor::factor(threads::Crew& crew, const HalfSolve* right) {
   return std::visit(
       [&](auto& panels) {
         if (!panels.factor(values_, border_values_, crew, right)) return false;
-        negative_ = panels.negative();
+        const auto [smallest, negative] = panels.pivots();
+        negative_ = negative;
+        largest_diagonal_ = panels.diagonal().maxCoeff();
         const double vanished = panels.rounding() * (plan_->precision == Precision::float64 ? kRoundings : kRefined);
-        return panels.smallest_pivot() > vanished * panels.diagonal().maxCoeff() || scaled_condition() * vanished < 1.0;
+        return smallest > vanished * largest_diagonal_ || scaled_condition() * vanished < 1.0;
       },
       panels_);
 }
@@ -170,13 +172,18 @@ void SparseFactor::back_solve(const Eigen::VectorXd& y, const Eigen::VectorXd& u
   std::visit([&](const auto& panels) { panels.back_solve(y, &u, x); }, panels_);
 }
 
-void SparseFactor::kept_compliance(Eigen::MatrixXd& W) const {
-  std::visit([&](const auto& panels) { panels.kept_compliance(W); }, panels_);
+void SparseFactor::kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const {
+  std::visit([&](const auto& panels) { panels.kept_compliance(rows, W); }, panels_);
+}
+
+void SparseFactor::kept_column(int place, Eigen::VectorXd& column) const {
+  std::visit([&](const auto& panels) { panels.kept_column(place, column); }, panels_);
 }
 
 Eigen::MatrixXd SparseFactor::compliance() const {
   Eigen::MatrixXd kept;
-  kept_compliance(kept);
+  const Run all{0, 0, borders()};
+  kept_compliance({&all, 1}, kept);
   const Eigen::VectorXi at = Eigen::VectorXi::Map(plan_->border.data(), borders());
   return Eigen::MatrixXd(kept.selfadjointView<Eigen::Lower>())(at, at);
 }

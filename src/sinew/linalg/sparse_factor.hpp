@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -26,8 +27,8 @@ namespace sinew::linalg {
 /// good to some 1e-7 of A's condition, and wants refinement: `subtract_product` is exact.
 class SparseFactor {
  public:
-  using Matrix = Eigen::SparseMatrix<double>;  ///< lower triangle, compressed columns
-  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  using Matrix = Eigen::SparseMatrix<double>;                 ///< lower triangle, compressed columns
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;  ///< compressed rows
 
   /// The unknowns of a border row must all meet each other in A; throws std::invalid_argument where they do not.
   static std::shared_ptr<const Fronts> make_plan(const Matrix& pattern, const Rows& border = {},
@@ -57,7 +58,7 @@ class SparseFactor {
   int size() const { return static_cast<int>(plan_->place.size()); }
   int borders() const { return static_cast<int>(plan_->border.size()); }
   /// Largest entry of A's diagonal, its size.
-  double largest_diagonal() const { return diagonal().size() > 0 ? diagonal().maxCoeff() : 0.0; }
+  double largest_diagonal() const { return largest_diagonal_; }
   /// How many eigenvalues are negative (Sylvester).
   int negative() const { return negative_; }
   /// Numbers kept of L below its diagonal, zeros between merged columns included.
@@ -83,8 +84,10 @@ class SparseFactor {
 
   /// W = H A^-1 H^T, in the order of the rows.
   Eigen::MatrixXd compliance() const;
-  /// Its lower triangle in the order in which they are kept, Fronts::border; the rest is left as it is.
-  void kept_compliance(Eigen::MatrixXd& W) const;
+  /// The lower triangle of some of it, in the order in which its rows are kept, Fronts::border: these runs, ascending;
+  /// the rest of the matrix is left as it is. And one whole column, in that order.
+  void kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const;
+  void kept_column(int place, Eigen::VectorXd& column) const;
   /// u = H R^T S y: H A^-1 b for y = R b.
   void border_times(const Eigen::VectorXd& y, Eigen::VectorXd& u) const;
   /// y += R H^T u.
@@ -104,6 +107,7 @@ class SparseFactor {
   AlignedVector<double> values_;
   std::vector<double> border_values_;
   Panels panels_;
+  double largest_diagonal_ = 0.0;
   int negative_ = 0;
 };
 

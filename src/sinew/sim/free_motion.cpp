@@ -114,28 +114,18 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   clock.next(times.compliance);
   volume.at.clear();
   for (const int k : kept_) volume.at.push_back(row_of(model, context.model, k));
-  Eigen::MatrixXd& W = model.watched.empty() ? volume.W : compliance_;
-  factor_->kept_compliance(W);
+  factor_->kept_compliance(runs_, volume.W);
+  watched_.resize(volume.W.rows(), static_cast<Eigen::Index>(3 * model.watched.size()));
+  for (Eigen::Index k = 0; k < watched_.cols(); ++k) {
+    factor_->kept_column(model.fronts->border[3 * model.rows.size() + static_cast<std::size_t>(k)], column_);
+    for (Eigen::Index j = 0; j < watched_.rows(); ++j) watched_(j, k) = column_[kept_places_[j]];
+  }
   rim_.clear();
   N_.resize(0, 0);
   Y_.resize(0, 0);
   Z_.resize(0, 0);
-  if (kind == solid::Tangent::exact) add_rim(context, iterate, number, W);
+  if (kind == solid::Tangent::exact) add_rim(context, iterate, number, volume.W);
   volume.symmetric = Z_.size() == 0;
-  if (!model.watched.empty()) {
-    const auto rows = static_cast<Eigen::Index>(kept_.size());
-    volume.W.resize(rows, rows);
-    for (Eigen::Index j = 0; j < rows; ++j) {
-      const auto from = W.col(kept_places_[j]);
-      auto to = volume.W.col(j);
-      for (Eigen::Index i = volume.symmetric ? j : 0; i < rows; ++i) to[i] = from[kept_places_[i]];
-    }
-    watched_.resize(rows, static_cast<Eigen::Index>(3 * model.watched.size()));
-    for (Eigen::Index k = 0; k < watched_.cols(); ++k) {
-      const int own = static_cast<int>(3 * model.rows.size()) + static_cast<int>(k);
-      for (Eigen::Index j = 0; j < rows; ++j) watched_(j, k) = compliance_of(own, kept_[j]);
-    }
-  }
   return Z_.allFinite();
 }
 
@@ -146,6 +136,14 @@ void FreeMotion::plan(const SolidModel& model) {
   std::sort(kept_.begin(), kept_.end(), [&place](int a, int b) { return place[a] < place[b]; });
   kept_places_.resize(static_cast<Eigen::Index>(kept_.size()));
   std::transform(kept_.begin(), kept_.end(), kept_places_.begin(), [&place](int own) { return place[own]; });
+  runs_.clear();
+  for (int i = 0; i < kept_places_.size(); ++i) {
+    if (i > 0 && kept_places_[i] == kept_places_[i - 1] + 1) {
+      ++runs_.back().length;
+    } else {
+      runs_.push_back({kept_places_[i], i, 1});
+    }
+  }
   factor_.emplace(model.fronts);  // last: memory may run out
 }
 
@@ -174,22 +172,15 @@ void FreeMotion::add_rim(const StepContext& context, const State& iterate, int n
   const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
   Z_ = (Eigen::MatrixXd::Identity(N_.rows(), N_.cols()) + N_ * C).partialPivLu().solve(N_);
-  const std::vector<int>& place = factor_->plan().border;
-  Eigen::MatrixXd kept(HY.rows(), HY.cols());
-  for (Eigen::Index k = 0; k < HY.rows(); ++k) kept.row(place[static_cast<std::size_t>(k)]) = HY.row(k);
+  const Eigen::MatrixXd kept = HY(kept_, Eigen::all);
   W = Eigen::MatrixXd(W.selfadjointView<Eigen::Lower>()) - kept * Z_ * kept.transpose();
+  watched_ -= (HY.bottomRows(watched_.cols()) * Z_ * kept.transpose()).transpose();
 }
 
 const Eigen::VectorXd& FreeMotion::with_rim(const Eigen::VectorXd& y) {
   if (Y_.size() == 0) return y;
   turned_ = y - Y_ * (Z_ * (Y_.transpose() * factor_->signs().cwiseProduct(y)));
   return turned_;
-}
-
-double FreeMotion::compliance_of(int one, int other) const {
-  const std::vector<int>& place = factor_->plan().border;
-  const auto [first, last] = std::minmax(place[one], place[other]);
-  return Z_.size() == 0 ? compliance_(last, first) : compliance_(place[one], place[other]);
 }
 
 void FreeMotion::push_own(const SolidModel& model, const Model& whole, Eigen::VectorXd& c) {

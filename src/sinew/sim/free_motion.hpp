@@ -71,8 +71,6 @@ class FreeMotion {
   void take_push(const SolidModel& model, const Model& whole, Eigen::VectorXd& c);
   /// The row of the scene that is a border row, not a watched point's.
   static int row_of(const SolidModel& model, const Model& whole, int border_row);
-  /// What a force on border row `other` moves a watched one.
-  double compliance_of(int one, int other) const;
   /// Forces of the model's rows, zeros for watched points.
   void gather(const SolidModel& model, const Model& whole, const Eigen::VectorXd& dlambda);
   void add_rim(const StepContext& context, const State& iterate, int number, Eigen::MatrixXd& W);
@@ -82,18 +80,18 @@ class FreeMotion {
   // Border rows are those of the model's couplings, three each, then of watched points: so stand rows_ and free_. The
   // factor keeps them in an order of its own, Fronts::border: so stand W and watched_. c and dlambda are the scene's.
   std::optional<linalg::SparseFactor> factor_;
-  std::vector<int> kept_;        ///< border rows that are rows of the scene, in the order in which they are kept
-  Eigen::VectorXi kept_places_;  ///< and their places in that order
-  Eigen::MatrixXd compliance_;   ///< where points are watched: of all border rows, as they are kept
-  Eigen::MatrixXd watched_;      ///< and its columns of watched rows, over the rows of the scene as they are kept
-  Eigen::VectorXd free_;         ///< motion of the border rows by the push
-  std::vector<int> rim_;         ///< unknowns of P
-  Eigen::MatrixXd N_, Y_, Z_;    ///< V = 1 - Y Z Y^T S; empty where A is symmetric
+  std::vector<int> kept_;          ///< border rows that are rows of the scene, in the order in which they are kept
+  Eigen::VectorXi kept_places_;    ///< and their places in that order
+  std::vector<linalg::Run> runs_;  ///< the same in runs
+  Eigen::MatrixXd watched_;        ///< what forces on them, as they are kept, move watched rows, a column each
+  Eigen::VectorXd free_;           ///< motion of the border rows by the push
+  std::vector<int> rim_;           ///< unknowns of P
+  Eigen::MatrixXd N_, Y_, Z_;      ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
   Eigen::VectorXd push_, pushed_, moved_;  ///< what the forces left unbalanced, half solved
   std::vector<int> reach_;                 ///< where rows of contacts may have entries
   Eigen::MatrixXd contacts_, coupled_;     ///< R H_c^T there, and H A^-1 H_c^T
-  Eigen::VectorXd half_, acting_;
+  Eigen::VectorXd half_, acting_, column_;
 };
 
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/linalg/finite.hpp"
 #include "sinew/sim/clock.hpp"
 
 namespace sinew {
@@ -79,12 +80,11 @@ ContactReport Linearization::contact_report() const {
 
 bool Linearization::finite() const {
   const solve::CoupledProblem& problem = reduced_.problem;
-  // 0 times what is not finite is NaN
-  const auto number = [](const Eigen::VectorXd& v) { return (v.array() * 0.0).sum() == 0.0; };
-  return std::isfinite(largest_) && std::isfinite(reduced_.violation) && number(problem.r) && number(problem.c) &&
-         std::all_of(forces_.begin(), forces_.end(), [&](const SolidForces& f) { return number(f.r); }) &&
+  return std::isfinite(largest_) && std::isfinite(reduced_.violation) && linalg::finite(problem.r) &&
+         linalg::finite(problem.c) &&
+         std::all_of(forces_.begin(), forces_.end(), [](const SolidForces& own) { return linalg::finite(own.r); }) &&
          std::all_of(problem.chains.begin(), problem.chains.end(),
-                     [&](const solve::ChainPart& part) { return number(part.r); });
+                     [](const solve::ChainPart& part) { return linalg::finite(part.r); });
 }
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {

@@ -42,6 +42,12 @@ struct BlockPlace {
   std::uint32_t turned : 1 = 0;
 };
 
+/// Where an entry of the mass matrix goes: three times onto the diagonal of the block of its nodes.
+struct MassPlace {
+  std::uint32_t at = 0;  ///< of the block, as BlockPlace
+  double mass = 0.0;     ///< [kg]
+};
+
 /// A volume, where it is attached, and how its matrix is factored.
 struct SolidModel {
   std::string name;
@@ -59,7 +65,8 @@ struct SolidModel {
   std::vector<BlockPlace> places;              ///< of every element's blocks on and below its diagonal, row by row
   std::vector<std::size_t> first_place;        ///< per element
   std::vector<solid::TetPlaces> batch_places;  ///< of every batch's, none of which is turned
-  std::vector<BlockPlace> mass_places;         ///< of the entries of the mass matrix's lower triangle
+  std::vector<MassPlace> mass_places;          ///< of the mass matrix's lower triangle, but for what is held
+  std::vector<std::uint32_t> node_places;      ///< of every node's block on the diagonal
   int held() const { return 3 * body.nodes() - body.unknowns; }
 };
 

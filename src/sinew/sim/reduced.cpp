@@ -31,7 +31,7 @@ void add_points(RodRows& rod) {
     const rod::CurvePoint on_curve = rod::curve_point(rod.shape(), s);
     const Vec3 P = solid_point(rod.context().model, iterate, point.solid, point.where), gap = P - on_curve.position;
     problem.c.segment<3>(point.row) = gap;
-    for (int i = 0; i < 3; ++i) rod.attach(rod.row(point.row + i), on_curve, Vec3::Zero(), Vec3::Unit(i));
+    rod.attach_centre(rod.row(point.row), on_curve);
     Reduced& reduced = rod.reduced();
     reduced.scale = std::max(reduced.scale, lambda.norm());
     if (point.unknown < 0) {

@@ -60,6 +60,22 @@ void RodRows::attach(int border, const rod::CurvePoint& point, const Vec3& offse
   own_.border.push_back(border);
 }
 
+void RodRows::attach_centre(int first, const rod::CurvePoint& point) {
+  const Vec3 r = point.position - own_.shape.origin;
+  own_.attachments.resize(own_.attachments.size() + 3);
+  linalg::Attachment* const rows = own_.attachments.data() + own_.attachments.size() - 3;
+  for (int i = 0; i < 3; ++i) {
+    rows[i].link = point.section;
+    rows[i].g << r.cross(Vec3::Unit(i)), Vec3::Unit(i);
+    rows[i].b.resize(point.twists.cols());
+    own_.border.push_back(first + i);
+  }
+  for (Eigen::Index c = 0; c < point.twists.cols(); ++c) {
+    const Vec3 motion = rod::moved(point.twists.col(c), r);
+    for (int i = 0; i < 3; ++i) rows[i].b[c] = motion[i];
+  }
+}
+
 void RodRows::add_forces() {
   for (std::size_t i = 0; i < context_.model.loads.size(); ++i) {
     const RodLoadModel* const on_rod = std::get_if<RodLoadModel>(&context_.model.loads[i].on);

@@ -22,16 +22,6 @@ void each_pair(std::span<const int> nodes, const Visit& visit) {
   }
 }
 
-/// Entries of the mass matrix on and below its diagonal, as pairs of nodes.
-template <class Visit>
-void each_mass(const solid::Body& body, const Visit& visit) {
-  for (int b = 0; b < body.mass.outerSize(); ++b) {
-    for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at) {
-      if (at.row() >= b) visit(static_cast<int>(at.row()), b, at.value());
-    }
-  }
-}
-
 /// Adds the entries (i, j) of two nodes. In a block on the diagonal the upper triangle is added, too, where nothing
 /// reads it.
 template <class Entry>
@@ -44,8 +34,8 @@ void add_block(const BlockPlace& place, const Entry& entry, double* values) {
 }
 
 /// The same of a multiple of the unit matrix.
-void add_unit(const BlockPlace& place, double value, double* values) {
-  for (int i = 0; i < 3; ++i) values[place.at + 5 * static_cast<std::uint32_t>(i)] += value;
+void add_unit(std::uint32_t at, double value, double* values) {
+  for (std::uint32_t i = 0; i < 3; ++i) values[at + 5 * i] += value;
 }
 
 using Pattern = linalg::SparseFactor::Matrix;
@@ -184,7 +174,14 @@ void plan_factor(Model& model, int number) {
     add_places(cell.nodes(), solid.places);
   }
   place_batches(solid);
-  each_mass(body, [&](int row, int column, double) { solid.mass_places.push_back(block_place(solid, row, column)); });
+  for (int b = 0; b < body.nodes(); ++b) {
+    solid.node_places.push_back(block_place(solid, b, b).at);
+    for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at) {
+      const auto a = static_cast<int>(at.row());
+      if (a >= b && first_unknown(body, a) >= 0 && first_unknown(body, b) >= 0)
+        solid.mass_places.push_back({block_place(solid, a, b).at, at.value()});
+    }
+  }
   for (LoadModel& load : model.loads) {
     SolidLoadModel* const own = std::get_if<SolidLoadModel>(&load.on);
     if (!own || own->solid != number) continue;
@@ -267,24 +264,15 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
   // By reference: functions as large as these would ask for memory.
   solid::assemble_tangent(body, start, x, deformation, kind, std::cref(insert), std::cref(insert_batch));
   const double factor = solid::mass_factor(body, start.rate);
-  const BlockPlace* place = model.mass_places.data();
-  each_mass(body, [&](int, int, double mass) { add_unit(*place++, factor * mass, values); });
-  if (model.springs.size() == 0) return;
-  place = model.mass_places.data();
-  each_mass(body, [&](int row, int column, double) {
-    const BlockPlace& own = *place++;
-    if (row != column) return;
-    add_block(
-        own, [&](int i, int j) { return i == j ? model.springs(i, row) : 0.0; }, values);
-  });
+  for (const MassPlace& own : model.mass_places) add_unit(own.at, factor * own.mass, values);
+  for (Eigen::Index node = 0; node < model.springs.cols(); ++node) {
+    double* const at = values + model.node_places[static_cast<std::size_t>(node)];
+    for (int i = 0; i < 3; ++i) at[5 * i] += model.springs(i, node);
+  }
 }
 
 void add_grip(const SolidModel& model, const Grip& grip, double* values) {
-  const BlockPlace* place = model.mass_places.data();
-  each_mass(model.body, [&](int row, int column, double) {
-    const BlockPlace& own = *place++;
-    if (row == grip.node && column == grip.node) add_unit(own, grip.stiffness, values);
-  });
+  add_unit(model.node_places[static_cast<std::size_t>(grip.node)], grip.stiffness, values);
 }
 
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "sinew/linalg/finite.hpp"
 #include "sinew/rod/kinematics.hpp"
 #include "sinew/sim/internal.hpp"
 
@@ -141,7 +142,7 @@ bool finite(const State& state) {
     if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(what)>>) {
       all &= std::isfinite(static_cast<double>(what));
     } else {
-      all &= (what.array() * 0.0).sum() == 0.0;  // 0 times what is not finite is NaN
+      all &= linalg::finite(what);
     }
   };
   each_number(state, look);

@@ -149,8 +149,7 @@ struct Effort {
 };
 
 /// Advances a state by h [s]. On failure it stays as it is; while the step runs nobody may read it, as it stands
-/// elsewhere then. After the first step of a model no memory is asked for
-/// where Newton's steps need no fallback.
+/// elsewhere then. After the first step of a model no memory is asked for where Newton's steps need no fallback.
 StepReport step(const Model& model, Workspace& workspace, const Command& command, double h, State& state,
                 Effort effort = {});
 

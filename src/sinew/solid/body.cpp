@@ -290,13 +290,13 @@ void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& 
   add_others(body, start, x, deformation, residual.others);
   const double factor = mass_factor(body, start.rate);
   residual.sum.resize(3, n);
+  if (start.rate > 0.0) residual.acceleration = factor * (x - start.x) - start.rate * start.v;
   Eigen::Array4d largest = Eigen::Array4d::Zero();  // of each kind, squared
   for (int b = 0; b < n; ++b) {
     Vec3 inertia = Vec3::Zero();
     if (start.rate > 0.0) {
-      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)  // (v - v_0)/h + ..
-        inertia +=
-            at.value() * (factor * (x.col(at.row()) - start.x.col(at.row())) - start.rate * start.v.col(at.row()));
+      for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at)
+        inertia += at.value() * residual.acceleration.col(at.row());
     }
     const Vec3 weight = body.masses[b] * gravity;
     Vec3 elastic = elastic_of(deformation.forces, b), viscous = viscous_of(deformation.forces, b);

@@ -11,20 +11,7 @@ namespace {
 using namespace lanes;
 
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
-const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
 void add_four(double* p, const Four& v) { *reinterpret_cast<Four*>(p) += v; }
-
-/// Four vectors of three numbers, which come as their first, second and third numbers.
-struct FourVectors {
-  Four of[4];
-};
-FourVectors turned(const Four& x, const Four& y, const Four& z) {
-  const Four none = {};
-  const Four xy02 = __builtin_shufflevector(x, y, 0, 4, 2, 6), xy13 = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-  const Four z02 = __builtin_shufflevector(z, none, 0, 4, 2, 6), z13 = __builtin_shufflevector(z, none, 1, 5, 3, 7);
-  return {{__builtin_shufflevector(xy02, z02, 0, 1, 4, 5), __builtin_shufflevector(xy13, z13, 0, 1, 4, 5),
-           __builtin_shufflevector(xy02, z02, 2, 3, 6, 7), __builtin_shufflevector(xy13, z13, 2, 3, 6, 7)}};
-}
 
 // A record is two vectors, each followed by a zero. Where it fills a register, both are loaded, turned and stored as
 // one; elsewhere registers are too few to hold both.
@@ -91,6 +78,20 @@ void scatter(const Two& v, const int* node, double* records) {
 }
 
 #else
+
+const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
+
+/// Four vectors of three numbers, which come as their first, second and third numbers.
+struct FourVectors {
+  Four of[4];
+};
+FourVectors turned(const Four& x, const Four& y, const Four& z) {
+  const Four none = {};
+  const Four xy02 = __builtin_shufflevector(x, y, 0, 4, 2, 6), xy13 = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  const Four z02 = __builtin_shufflevector(z, none, 0, 4, 2, 6), z13 = __builtin_shufflevector(z, none, 1, 5, 3, 7);
+  return {{__builtin_shufflevector(xy02, z02, 0, 1, 4, 5), __builtin_shufflevector(xy13, z13, 0, 1, 4, 5),
+           __builtin_shufflevector(xy02, z02, 2, 3, 6, 7), __builtin_shufflevector(xy13, z13, 2, 3, 6, 7)}};
+}
 
 /// One of the vectors in the records of the nodes of one register's elements.
 Vector gather(const double* vectors, const int* node) {
@@ -519,21 +520,42 @@ Symmetric inverse(const Symmetric& A) {
   });
 }
 
-/// Columns of blocks come as one number of eight elements after the other, and go as three numbers of one element.
+/// Adds three numbers of each element, which come as one number of all of them after the other.
+#if SINEW_LANES == 8
+[[gnu::always_inline]] inline void add_threes(const Eight (&numbers)[3], double* const (&to)[kBatch], int shift) {
+  const Truth three = {-1, -1, -1, 0, -1, -1, -1, 0};
+  const Lanes x = load(numbers[0]), y = load(numbers[1]), z = load(numbers[2]),
+              even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14),
+              odd = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  const auto add = [&](const Lanes& two, int one, int other) {
+    const Lanes own = reinterpret_cast<Lanes>(reinterpret_cast<Truth>(two) & three);
+    add_four(to[one] + shift, __builtin_shufflevector(own, own, 0, 1, 2, 3));
+    add_four(to[other] + shift, __builtin_shufflevector(own, own, 4, 5, 6, 7));
+  };
+  add(__builtin_shufflevector(even, z, 0, 1, 8, 8, 2, 3, 10, 10), 0, 2);
+  add(__builtin_shufflevector(odd, z, 0, 1, 9, 9, 2, 3, 11, 11), 1, 3);
+  add(__builtin_shufflevector(even, z, 4, 5, 12, 12, 6, 7, 14, 14), 4, 6);
+  add(__builtin_shufflevector(odd, z, 4, 5, 13, 13, 6, 7, 15, 15), 5, 7);
+}
+#else
+[[gnu::always_inline]] inline void add_threes(const Eight (&numbers)[3], double* const (&to)[kBatch], int shift) {
+  for (int first = 0; first < kBatch; first += 4) {
+    const FourVectors own = turned(four(numbers[0] + first), four(numbers[1] + first), four(numbers[2] + first));
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) add_four(to[first + i] + shift, own.of[i]);
+  }
+}
+#endif
+
+/// Columns of blocks.
 void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers) {
   for (int k = 0; k < 10; ++k) {
-    for (int first = 0; first < kBatch; first += 4) {
-      double* to[4];
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) to[i] = numbers + places.block[k][first + i];
+    double* to[kBatch];
+#pragma GCC unroll 8
+    for (int i = 0; i < kBatch; ++i) to[i] = numbers + places.block[k][i];
 #pragma GCC unroll 3
-      for (int column = 0; column < 3; ++column) {
-        const Eight* rows = stiffness.block[k] + 3 * column;
-        const FourVectors own = turned(four(rows[0] + first), four(rows[1] + first), four(rows[2] + first));
-#pragma GCC unroll 4
-        for (int i = 0; i < 4; ++i) add_four(to[i] + 4 * column, own.of[i]);
-      }
-    }
+    for (int column = 0; column < 3; ++column)
+      add_threes(reinterpret_cast<const Eight(&)[3]>(stiffness.block[k][3 * column]), to, 4 * column);
   }
 }
 

@@ -52,6 +52,13 @@ void Quadratic::split(Eigen::VectorXd& v) {
 /// The least on the active limits, without what rounding has left on the way; and their pulls.
 void Quadratic::settle(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Eigen::VectorXd& lower,
                        const Eigen::VectorXd& upper, Eigen::VectorXd& x) {
+  if (active() == 0) {  // one correction
+    along_ = -g;
+    along_.noalias() -= H.selfadjointView<Eigen::Lower>() * x;
+    factor_.solveInPlace(along_);
+    x += along_;
+    return;
+  }
   span();
   for (int turn = 0; turn < 2; ++turn) {
     auto give = give_.head(active());
