@@ -110,18 +110,21 @@ TEST(Sliding, projection_follows_a_point_around_the_bend_and_past_both_ends) {
   }
 }
 
-// Wherever it starts from on its branch, and however far from the rod the point is.
+// From near and far, for points on the rod and some way off; across the tip, where the rod goes on straight.
 TEST(Sliding, projection_is_exact_to_rounding) {
   for (const std::vector<int>& basis : {std::vector{2}, std::vector{0, 1, 2}, std::vector{0, 1, 2, 3, 4, 5}}) {
     const rod::Rod rod = bent_rod(basis);
     const rod::Configuration shape = rod::configure(rod, kBase, coordinates(rod, 10.0));
-    for (const double s : {0.013, 0.055, 0.093}) {
-      for (const double off : {0.0, 1e-6, 1e-3, 1e-2}) {
-        const rod::CurvePoint at = rod::curve_point(shape, s);
-        const Vec3 P = at.position + off * at.derivative.cross(Vec3(0.3, -0.5, 0.8)).normalized();
-        for (const double before : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 4e-3, -4e-3})
-          EXPECT_NEAR(project(shape, s + before, P), s, 2e-15)
-              << basis.size() << " " << s << " " << off << " " << before;
+    const auto expect = [&](double s, double off, double before) {
+      const rod::CurvePoint at = rod::curve_point(shape, std::min(s, rod.length()));
+      const Vec3 across = at.derivative.cross(Vec3(0.3, -0.5, 0.8)).normalized();
+      const Vec3 P = at.position + std::max(0.0, s - rod.length()) * at.derivative + off * across;
+      EXPECT_NEAR(project(shape, s + before, P), s, 4e-15) << basis.size() << " " << s << " " << off << " " << before;
+    };
+    for (const double off : {0.0, 1e-6, 1e-3, 1e-2}) {
+      for (const double before : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 4e-3, -4e-3}) {
+        for (const double s : {0.013, 0.055, 0.093}) expect(s, off, before);
+        for (const double past : {1e-12, 1e-10, 1e-6, 1e-3}) expect(rod.length() + past, off, -past - std::abs(before));
       }
     }
   }

@@ -1,4 +1,6 @@
 // Commands of motors that bring points, turns and strains where they are wanted.
+#include "sinew/sim/inverse.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,6 +9,7 @@
 
 #include "sim/inverse_robots.hpp"
 #include "sinew/sim/motors.hpp"
+#include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
 

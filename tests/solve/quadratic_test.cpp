@@ -167,6 +167,22 @@ TEST(Quadratic, IsIndifferentToUnits) {
   }
 }
 
+TEST(Quadratic, BalancesToRoundingWhereNoLimitIsInTheWay) {
+  std::srand(3);
+  for (const double smallest : {1.0, 1e-4, 1e-8, 1e-12}) {
+    const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(Eigen::MatrixXd::Random(6, 6)).householderQ();
+    Eigen::VectorXd sizes(6);
+    for (int i = 0; i < 6; ++i) sizes[i] = std::pow(smallest, i / 5.0);
+    const Eigen::MatrixXd H = Q * sizes.asDiagonal() * Q.transpose(), A = Eigen::MatrixXd::Random(4, 6);
+    const Eigen::VectorXd g = Eigen::VectorXd::Random(6), far = Eigen::VectorXd::Constant(4, 1e3 / smallest);
+    Quadratic solver;
+    Eigen::VectorXd x;
+    ASSERT_EQ(solver.minimise(H, g, A, -far, far, x), Outcome::solved);
+    EXPECT_LT((H.selfadjointView<Eigen::Lower>() * x + g).norm(), 4e-16 * (x.norm() + g.norm())) << smallest;
+    EXPECT_TRUE(solver.pulls().isZero(0.0));
+  }
+}
+
 TEST(Quadratic, RefusesWhatHasNoLeast) {
   Quadratic solver;
   Problem own{Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Identity(2, 2), Eigen::Vector2d(1, 2),

@@ -17,7 +17,6 @@ double project(const rod::Configuration& shape, double s, const Vec3& P) {
     if (ahead >= length) return ahead;
     s = length;
   }
-  double before = INFINITY;  // the step taken before this one
   for (int iteration = 0; iteration < 50; ++iteration) {
     const rod::CentrePoint point = rod::centre_point(shape, s);
     const Vec3 gap = P - point.position;
@@ -29,9 +28,7 @@ double project(const rod::Configuration& shape, double s, const Vec3& P) {
     const double ds = std::clamp(slope / curvature, -reach, reach);
     if (s == length && ds > 0.0) return beyond_tip();
     s = std::min(s + ds, length);
-    // Steps shrink at least by the ratio that they have shrunk by, Newton's faster: the next one would not be seen.
-    if (ds * ds <= 1e-15 * length * std::min(before, reach)) break;
-    before = std::abs(ds);
+    if (std::abs(ds) <= 1e-15 * length) break;
   }
   return s;
 }

@@ -5,7 +5,7 @@
 
 namespace sinew::linalg {
 
-/// All are: 0 times one that is not is NaN. (Eigen's allFinite asks one after the other.)
+/// Whether all are finite: 0 times infinity or NaN is NaN. (Eigen's allFinite asks one after the other.)
 template <class Numbers>
 bool finite(const Eigen::PlainObjectBase<Numbers>& numbers) {
   using Eight = Eigen::Array<double, 8, 1>;

@@ -179,7 +179,7 @@ void FrontPanels<Real>::add_children(const Front& front, Real* room, bool to_pan
   }
 }
 
-// In several lanes, which do not wait for each other.
+// In several lanes, which do not wait for each other. Signs are 1 or -1.
 template <class Real>
 typename FrontPanels<Real>::Pivots FrontPanels<Real>::pivots() const {
   using Lanes = Eigen::Array<Real, kLanes, 1>;
@@ -189,12 +189,12 @@ typename FrontPanels<Real>::Pivots FrontPanels<Real>::pivots() const {
     least = least.min(Lanes::Map(pivots_.data() + at).abs());
     signs += Lanes::Map(signs_.data() + at);
   }
-  Real smallest = least.minCoeff(), sum = signs.sum();
+  double smallest = static_cast<double>(least.minCoeff()), sum = signs.template cast<double>().sum();
   for (; at < size(); ++at) {
-    smallest = std::min(smallest, std::abs(pivots_[at]));
-    sum += signs_[at];
+    smallest = std::min(smallest, static_cast<double>(std::abs(pivots_[at])));
+    sum += static_cast<double>(signs_[at]);
   }
-  return {static_cast<double>(smallest), static_cast<int>((static_cast<Real>(size()) - sum) / 2)};
+  return {smallest, static_cast<int>((size() - sum) / 2.0)};
 }
 
 template <class Real>

@@ -33,9 +33,9 @@ class FrontPanels {
   bool factor(const AlignedVector<double>& values, const std::vector<double>& border_values, threads::Crew& crew,
               const HalfSolve* right);
   static double rounding() { return static_cast<double>(std::numeric_limits<Real>::epsilon()); }
-  /// What became of the pivots.
+  /// How small they are, and how many are negative.
   struct Pivots {
-    double smallest = 0.0;  ///< its size
+    double smallest = 0.0;
     int negative = 0;
   };
   Pivots pivots() const;

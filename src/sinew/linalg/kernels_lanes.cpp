@@ -465,7 +465,7 @@ void totals(const Register (&v)[4], Real* sums) {
   }
 }
 
-/// `tail`: what is left of y after its whole registers, and zeros.
+/// `tail`: what is left of y after its whole registers, and zeros. Sums are added up four at a time.
 template <int count>
 void dots(const Real* A, int stride, int height, const Real* y, const Lanes& tail, Real* x) {
   Lanes sum[4] = {};
@@ -493,9 +493,19 @@ void multiply_transposed(const Real* A, int stride, int height, int columns, con
   const auto rest = [&]<int count>() {
     dots<count>(A + static_cast<long>(k) * stride, stride, height, y, tail, x + k);
   };
-  if (columns - k == 3) rest.template operator()<3>();
-  if (columns - k == 2) rest.template operator()<2>();
-  if (columns - k == 1) rest.template operator()<1>();
+  switch (columns - k) {
+    case 3:
+      rest.template operator()<3>();
+      break;
+    case 2:
+      rest.template operator()<2>();
+      break;
+    case 1:
+      rest.template operator()<1>();
+      break;
+    default:
+      break;
+  }
 }
 
 /// x <- P^-1 x, or P^-T x, with a square on the diagonal, whose columns are the rows of P^-1.

@@ -27,10 +27,11 @@ namespace sinew::linalg {
 /// good to some 1e-7 of A's condition, and wants refinement: `subtract_product` is exact.
 class SparseFactor {
  public:
-  using Matrix = Eigen::SparseMatrix<double>;                 ///< lower triangle, compressed columns
-  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;  ///< compressed rows
+  using Matrix = Eigen::SparseMatrix<double>;  ///< lower triangle, compressed columns
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  /// The unknowns of a border row must all meet each other in A; throws std::invalid_argument where they do not.
+  /// Of compressed matrices. The unknowns of a border row must all meet each other in A; throws std::invalid_argument
+  /// where they do not.
   static std::shared_ptr<const Fronts> make_plan(const Matrix& pattern, const Rows& border = {},
                                                  std::span<const int> slots = {},
                                                  Precision precision = Precision::float64);
@@ -84,8 +85,8 @@ class SparseFactor {
 
   /// W = H A^-1 H^T, in the order of the rows.
   Eigen::MatrixXd compliance() const;
-  /// The lower triangle of some of it, in the order in which its rows are kept, Fronts::border: these runs, ascending;
-  /// the rest of the matrix is left as it is. And one whole column, in that order.
+  /// Some of its rows and columns, in the order in which they are kept, Fronts::border: these runs, ascending, one
+  /// after the other. Above the diagonal stands anything. And one column, whole, in that order.
   void kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const;
   void kept_column(int place, Eigen::VectorXd& column) const;
   /// u = H R^T S y: H A^-1 b for y = R b.
@@ -107,7 +108,7 @@ class SparseFactor {
   AlignedVector<double> values_;
   std::vector<double> border_values_;
   Panels panels_;
-  double largest_diagonal_ = 0.0;
+  double largest_diagonal_ = 0.0;  ///< and the next, of the last matrix that could be factored
   int negative_ = 0;
 };
 

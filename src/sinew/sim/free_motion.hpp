@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "sinew/linalg/sparse_factor.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/solve/direct.hpp"
 
@@ -83,15 +85,15 @@ class FreeMotion {
   std::vector<int> kept_;          ///< border rows that are rows of the scene, in the order in which they are kept
   Eigen::VectorXi kept_places_;    ///< and their places in that order
   std::vector<linalg::Run> runs_;  ///< the same in runs
-  Eigen::MatrixXd watched_;        ///< what forces on them, as they are kept, move watched rows, a column each
+  Eigen::MatrixXd watched_;        ///< how far a force on each of them moves a watched row, a column per watched row
   Eigen::VectorXd free_;           ///< motion of the border rows by the push
   std::vector<int> rim_;           ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;      ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
-  Eigen::VectorXd push_, pushed_, moved_;  ///< what the forces left unbalanced, half solved
-  std::vector<int> reach_;                 ///< where rows of contacts may have entries
-  Eigen::MatrixXd contacts_, coupled_;     ///< R H_c^T there, and H A^-1 H_c^T
-  Eigen::VectorXd half_, acting_, column_;
+  Eigen::VectorXd push_, pushed_, moved_;   ///< what the forces left unbalanced, half solved
+  std::vector<int> reach_;                  ///< where rows of contacts may have entries
+  Eigen::MatrixXd contacts_, coupled_;      ///< R H_c^T there, and H A^-1 H_c^T
+  Eigen::VectorXd half_, acting_, column_;  ///< room
 };
 
 }  // namespace sinew

@@ -45,7 +45,7 @@ struct BlockPlace {
 /// Where an entry of the mass matrix goes: three times onto the diagonal of the block of its nodes.
 struct MassPlace {
   std::uint32_t at = 0;  ///< of the block, as BlockPlace
-  double mass = 0.0;     ///< [kg]
+  double mass = 0.0;     ///< [kg] that entry, a copy
 };
 
 /// A volume, where it is attached, and how its matrix is factored.
@@ -66,7 +66,7 @@ struct SolidModel {
   std::vector<std::size_t> first_place;        ///< per element
   std::vector<solid::TetPlaces> batch_places;  ///< of every batch's, none of which is turned
   std::vector<MassPlace> mass_places;          ///< of the mass matrix's lower triangle, but for what is held
-  std::vector<std::uint32_t> node_places;      ///< of every node's block on the diagonal
+  std::vector<std::uint32_t> node_places;      ///< of every node's block on the diagonal; 0 where it is held
   int held() const { return 3 * body.nodes() - body.unknowns; }
 };
 

@@ -24,7 +24,7 @@ class RodRows {
   /// Couples a border entry (an unknown z, or row(i)) to the strains and the base by f . dX/dq of the point at
   /// `offset`.
   void attach(int border, const rod::CurvePoint& point, const Vec3& offset, const Vec3& f);
-  /// The same of three border entries, by the three axes' dX/dq of the centreline's point.
+  /// Three entries from `first` on: x, y and z of the centreline's point. (As `attach`, at a third of its products.)
   void attach_centre(int first, const rod::CurvePoint& point);
   int row(int number) const { return static_cast<int>(reduced_.problem.r.size()) + number; }
 

@@ -33,9 +33,9 @@ void add_block(const BlockPlace& place, const Entry& entry, double* values) {
   }
 }
 
-/// The same of a multiple of the unit matrix.
-void add_unit(std::uint32_t at, double value, double* values) {
-  for (std::uint32_t i = 0; i < 3; ++i) values[at + 5 * i] += value;
+/// Adds to the diagonal of a block.
+void add_diagonal(std::uint32_t at, const Eigen::Vector3d& own, double* values) {
+  for (int i = 0; i < 3; ++i) values[at + 5 * static_cast<std::uint32_t>(i)] += own[i];
 }
 
 using Pattern = linalg::SparseFactor::Matrix;
@@ -178,8 +178,8 @@ void plan_factor(Model& model, int number) {
     solid.node_places.push_back(block_place(solid, b, b).at);
     for (Eigen::SparseMatrix<double>::InnerIterator at(body.mass, b); at; ++at) {
       const auto a = static_cast<int>(at.row());
-      if (a >= b && first_unknown(body, a) >= 0 && first_unknown(body, b) >= 0)
-        solid.mass_places.push_back({block_place(solid, a, b).at, at.value()});
+      const BlockPlace place = block_place(solid, a, b);
+      if (a >= b && place.at != 0) solid.mass_places.push_back({place.at, at.value()});
     }
   }
   for (LoadModel& load : model.loads) {
@@ -264,15 +264,15 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
   // By reference: functions as large as these would ask for memory.
   solid::assemble_tangent(body, start, x, deformation, kind, std::cref(insert), std::cref(insert_batch));
   const double factor = solid::mass_factor(body, start.rate);
-  for (const MassPlace& own : model.mass_places) add_unit(own.at, factor * own.mass, values);
-  for (Eigen::Index node = 0; node < model.springs.cols(); ++node) {
-    double* const at = values + model.node_places[static_cast<std::size_t>(node)];
-    for (int i = 0; i < 3; ++i) at[5 * i] += model.springs(i, node);
-  }
+  for (const MassPlace& own : model.mass_places)
+    add_diagonal(own.at, Eigen::Vector3d::Constant(factor * own.mass), values);
+  for (Eigen::Index node = 0; node < model.springs.cols(); ++node)
+    add_diagonal(model.node_places[static_cast<std::size_t>(node)], model.springs.col(node), values);
 }
 
 void add_grip(const SolidModel& model, const Grip& grip, double* values) {
-  add_unit(model.node_places[static_cast<std::size_t>(grip.node)], grip.stiffness, values);
+  add_diagonal(model.node_places[static_cast<std::size_t>(grip.node)], Eigen::Vector3d::Constant(grip.stiffness),
+               values);
 }
 
 }  // namespace sinew

@@ -110,7 +110,7 @@ struct Residual {
   Eigen::Matrix3Xd sum;
   double scale = 0.0;  ///< [N] largest single contribution at any node: what the residual is measured against
   linalg::AlignedVector<double> others;  ///< [N] forces of elements that are in no batch, as a Deformation's
-  Eigen::Matrix3Xd acceleration;         ///< [m/s^2] (v - v_0) / h + a v
+  Eigen::Matrix3Xd acceleration;         ///< [m/s^2] (v - v_0) / h + a v; room of steps that have an h
 };
 void residual(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, const Deformation& deformation,
               const Vec3& gravity, Residual& residual);

@@ -520,9 +520,9 @@ Symmetric inverse(const Symmetric& A) {
   });
 }
 
-/// Adds three numbers of each element, which come as one number of all of them after the other.
+/// Adds three numbers of each element, and a zero behind them, which come as one number of all of them after the other.
 #if SINEW_LANES == 8
-[[gnu::always_inline]] inline void add_threes(const Eight (&numbers)[3], double* const (&to)[kBatch], int shift) {
+[[gnu::always_inline]] inline void add_threes(const Eight* numbers, double* const (&to)[kBatch], int shift) {
   const Truth three = {-1, -1, -1, 0, -1, -1, -1, 0};
   const Lanes x = load(numbers[0]), y = load(numbers[1]), z = load(numbers[2]),
               even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14),
@@ -538,7 +538,7 @@ Symmetric inverse(const Symmetric& A) {
   add(__builtin_shufflevector(odd, z, 4, 5, 13, 13, 6, 7, 15, 15), 5, 7);
 }
 #else
-[[gnu::always_inline]] inline void add_threes(const Eight (&numbers)[3], double* const (&to)[kBatch], int shift) {
+[[gnu::always_inline]] inline void add_threes(const Eight* numbers, double* const (&to)[kBatch], int shift) {
   for (int first = 0; first < kBatch; first += 4) {
     const FourVectors own = turned(four(numbers[0] + first), four(numbers[1] + first), four(numbers[2] + first));
 #pragma GCC unroll 4
@@ -547,15 +547,14 @@ Symmetric inverse(const Symmetric& A) {
 }
 #endif
 
-/// Columns of blocks.
+/// Block by block, a column of all eight elements at a time.
 void add(const TetStiffness& stiffness, const TetPlaces& places, double* numbers) {
   for (int k = 0; k < 10; ++k) {
     double* to[kBatch];
 #pragma GCC unroll 8
     for (int i = 0; i < kBatch; ++i) to[i] = numbers + places.block[k][i];
 #pragma GCC unroll 3
-    for (int column = 0; column < 3; ++column)
-      add_threes(reinterpret_cast<const Eight(&)[3]>(stiffness.block[k][3 * column]), to, 4 * column);
+    for (int column = 0; column < 3; ++column) add_threes(stiffness.block[k] + 3 * column, to, 4 * column);
   }
 }
 

@@ -2,9 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include "sinew/linalg/finite.hpp"
 
@@ -34,14 +32,6 @@ Eigen::VectorXd equilibrate(Eigen::MatrixXd& K) {
     scale.array() *= d.array();
   }
   return scale;
-}
-
-/// The power of two nearest to 1 / sqrt(x), to within a factor of sqrt 2: what it multiplies is not rounded. 1 for x =
-/// 0.
-double inverse_root(double x) {
-  constexpr std::uint64_t kBias = 1023;
-  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(x) >> 52;  // kBias + log2 x, of x >= 0
-  return x > 0.0 ? std::bit_cast<double>((3 * kBias - exponent) / 2 << 52) : 1.0;
 }
 
 int unknowns_of(const CoupledProblem& problem) { return static_cast<int>(problem.r.size()); }
@@ -236,7 +226,8 @@ void CoupledFactor::weigh() {
     };
     for (const auto& [row, column, value] : problem.G) meet(nz + row, column, value);
     for (const auto& [row, column, value] : problem.B) meet(row, column, value);
-    for (int i = 0; i < size; ++i) scale_[i] *= inverse_root(largest_[i]);
+    for (double& own : largest_) own = own > 0.0 ? own : 1.0;
+    scale_.array() /= largest_.array().sqrt();
   }
   std::fill_n(least_.begin(), order_.yielding(), -kVanished * most);
   for (int i = 0; i < nz; ++i) least_[place[i]] = kVanished / (scale_[i] * scale_[i]);

@@ -52,7 +52,7 @@ void Quadratic::split(Eigen::VectorXd& v) {
 /// The least on the active limits, without what rounding has left on the way; and their pulls.
 void Quadratic::settle(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Eigen::VectorXd& lower,
                        const Eigen::VectorXd& upper, Eigen::VectorXd& x) {
-  if (active() == 0) {  // one correction
+  if (active() == 0) {  // no limit to drift off: one correction is enough
     along_ = -g;
     along_.noalias() -= H.selfadjointView<Eigen::Lower>() * x;
     factor_.solveInPlace(along_);
