@@ -37,7 +37,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   free_.resize(solids);
   factored_.assign(solids, Factored::failed);
   reduced_.problem.volumes.resize(solids);
-  {
+  if (!context.model.pairs.empty()) {
     const Clock clock(times.contact);
     evaluate_contacts(context, iterate, contacts_);
   }

@@ -59,7 +59,7 @@ double begin_step(Memory& memory, const Command& command, double h) {
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.here);
   double spent = 0.0;
-  {
+  if (!memory.context.model.pairs.empty()) {
     const Clock clock(spent);
     find_contacts(memory.context, iterate.state, memory.here.contacts());
   }
