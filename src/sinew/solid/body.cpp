@@ -224,7 +224,7 @@ void add_others(const Body& body, const StepStart& start, const Eigen::Matrix3Xd
   forces.clear();
   ElementResponse response;
   const auto add = [&](int e) {
-    if (forces.empty()) forces.resize(static_cast<std::size_t>(kRecord * body.nodes()), 0.0);
+    if (forces.empty()) forces.resize(kRecord * static_cast<std::size_t>(body.nodes()), 0.0);
     const auto scatter = [&](Eigen::Index first) {
       const std::span<const int> nodes = body.cells[static_cast<std::size_t>(e)].nodes();
       for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -246,7 +246,7 @@ void add_others(const Body& body, const StepStart& start, const Eigen::Matrix3Xd
 
 void deform(const Body& body, const StepStart& start, const Eigen::Matrix3Xd& x, Deformation& deformation) {
   const int n = body.nodes();
-  const auto size = static_cast<std::size_t>(kRecord * (n + 1));
+  const auto size = kRecord * static_cast<std::size_t>(n + 1);
   deformation.nodes.resize(size, 0.0);
   deformation.forces.assign(size, 0.0);
   deformation.frames.resize(body.batches.size());

@@ -67,7 +67,7 @@ class CoupledFactor {
   template <class Border>
   void fill(Border& border);
   void weigh();
-  void solve_once(const RightSide& right, CoupledSolution& solution, Part part = Part::all);
+  void solve_once(const RightSide& right, CoupledSolution& solution, Part wanted = Part::all);
   void find_strains(const RightSide& right, CoupledSolution& solution);
   double refine(const RightSide& right, CoupledSolution& solution);
   /// What a residual is measured against.
