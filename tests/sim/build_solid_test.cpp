@@ -318,6 +318,36 @@ TEST(Tangent, batches_are_what_their_elements_are_also_inside_out) {
   EXPECT_LT(off.norm(), 1e-12 * A.norm());
 }
 
+/// The tangent over the unknowns against differences of forces, in a disturbed state.
+void expect_tangent(const Model& model, const Command& command, double h) {
+  const State start = initial_state(model);
+  const StepContext context = make_context(model, start, command, h);
+  const SolidModel& solid = model.solids[0];
+  State state = start;
+  for (Eigen::Index i = 0; i < state.solids[0].x.size(); ++i)
+    state.solids[0].x(i) += 0.02 * std::sin(1.3 * static_cast<double>(i * i + 1));
+  linalg::SparseFactor factor(solid.fronts);
+  assemble(solid, context.start_of(0), state.solids[0].x, solid::Tangent::exact, factor.values());
+  for (const Grip& grip : command.grips) add_grip(solid, grip, factor.values());
+  const Eigen::MatrixXd K = Eigen::MatrixXd(factor.assembled()).selfadjointView<Eigen::Lower>();
+  const auto force = [&](const Eigen::VectorXd& moves) -> Eigen::VectorXd {
+    State moved = state;
+    Eigen::Matrix3Xd dx;
+    solid::from_unknowns(solid.body, moves, dx);
+    moved.solids[0].x += dx;
+    SolidForces forces;
+    solid_forces(context, moved, {}, 0, forces);
+    return forces.r;
+  };
+  const Eigen::MatrixXd D = difference(force, Eigen::VectorXd::Zero(solid.body.unknowns), 1e-6);
+  EXPECT_LT((K - D).norm(), 1e-8 * K.norm());
+}
+
+TEST(Springs, are_in_the_tangent) {
+  const Model model = build_block(on_springs(kRight));
+  expect_tangent(model, command_at(model, 1.0), 1.0);
+}
+
 /// With a node that is held, and another one in one direction; springs and grips pull at these as well.
 TEST(Tangent, has_mass_springs_and_grips_where_nodes_are_free) {
   for (const solid::MassMatrix mass : {solid::MassMatrix::lumped, solid::MassMatrix::consistent}) {
@@ -327,33 +357,10 @@ TEST(Tangent, has_mass_springs_and_grips_where_nodes_are_free) {
     hold(scene, NodeNumbers{{0}});
     solid_of(scene).fixed.push_back({NodeNumbers{{3}}, {false, true, false}});
     const Model model = build_block(scene);
-    const State start = initial_state(model);
+    ASSERT_EQ(model.solids[0].held(), 4);
     Command command = command_at(model, 1.0);
     for (const int node : {0, 3, 5}) command.grips.push_back({0, node, 3e6, Vec3(0.1, 0.2, 0.3)});
-    const StepContext context = make_context(model, start, command, 0.1);
-    const SolidModel& solid = model.solids[0];
-    ASSERT_EQ(solid.held(), 4);
-    State state = start;
-    for (Eigen::Index i = 0; i < state.solids[0].x.size(); ++i)
-      state.solids[0].x(i) += 0.02 * std::sin(1.3 * static_cast<double>(i * i + 1));
-    linalg::SparseFactor factor(solid.fronts);
-    assemble(solid, context.start_of(0), state.solids[0].x, solid::Tangent::exact, factor.values());
-    for (const Grip& grip : command.grips) add_grip(solid, grip, factor.values());
-    const Eigen::MatrixXd K = Eigen::MatrixXd(factor.assembled()).selfadjointView<Eigen::Lower>();
-    const auto force = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-      State moved = state;
-      for (int node = 0; node < solid.body.nodes(); ++node) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const int unknown = solid.body.unknown(axis, node);
-          if (unknown >= 0) moved.solids[0].x(axis, node) += x[unknown];
-        }
-      }
-      SolidForces forces;
-      solid_forces(context, moved, {}, 0, forces);
-      return forces.r;
-    };
-    const Eigen::MatrixXd D = difference(force, Eigen::VectorXd::Zero(solid.body.unknowns), 1e-6);
-    EXPECT_LT((K - D).norm(), 1e-8 * K.norm());
+    expect_tangent(model, command, 0.1);
   }
 }
 

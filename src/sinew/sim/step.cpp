@@ -59,7 +59,7 @@ double begin_step(Memory& memory, const Command& command, double h) {
   first_guess(memory.context, iterate.state);
   follow_points(memory.context, iterate.state, memory.here);
   double spent = 0.0;
-  if (!memory.context.model.pairs.empty()) {
+  if (!memory.context.model.pairs.empty()) {  // two readings of the clock cost more than to find none
     const Clock clock(spent);
     find_contacts(memory.context, iterate.state, memory.here.contacts());
   }
