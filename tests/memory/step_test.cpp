@@ -6,12 +6,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <vector>
 
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/sim/inverse.hpp"
+#include "sinew/solve/border_order.hpp"
 #include "support/robots.hpp"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -177,6 +180,27 @@ TEST(Memory, StatesOfInverseStepsStayWhereThereIsNoMore) {
   state = initial_state(model);
   EXPECT_EQ(one + advance(model, workspace, state, {}, {nullptr, &other}).aim.binding.size(), 2);
   for (const Goal* own : {&goal, &other}) expect_to_stay(model, initial_state(model), {nullptr, own});
+}
+
+/// An abscissa that reaches another section of its rod is attached elsewhere.
+TEST(Memory, OtherOrdersOfABorderAskForNone) {
+  std::array<solve::CoupledProblem, 2> problems;
+  for (std::size_t n = 0; n < 2; ++n) {
+    solve::CoupledProblem& own = problems[n];
+    own.r.setZero(40);
+    own.c.setZero(40);
+    own.chains.resize(1);
+    for (int i = 0; i < 80; ++i) own.chains[0].at.push_back(n == 0 ? i : 79 - i);
+  }
+  solve::BorderOrder order;
+  for (const solve::CoupledProblem& own : problems) order.set(own);
+  const std::vector<int> before = order.place();
+  counted = 0;
+  counting = true;
+  for (const solve::CoupledProblem& own : problems) order.set(own);
+  counting = false;
+  EXPECT_EQ(counted, 0);
+  EXPECT_EQ(order.place(), before);
 }
 
 TEST(Memory, SolidsOfAllKindsAskForNone) {

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <vector>
 
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/sim/linearization.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/solid_matrix.hpp"
+#include "sinew/solve/border_order.hpp"
 #include "support/meshes.hpp"
 #include "support/robots.hpp"
 
@@ -29,13 +32,17 @@ Scene nearly_incompressible(Scene scene) {
 std::vector<Sample> samples() {
   Scene sprung = block();
   sprung.solids[0].second.springs.push_back({Plane{Vec3(0.05, 0, 0), Vec3::UnitX()}, Vec3::Constant(1e9)});
+  Scene guided = block();  // points with one coordinate, or two, of their nodes held
+  guided.solids[0].second.fixed.push_back({Plane{Vec3::Zero(), Vec3::UnitY()}, {false, true, false}});
+  guided.solids[0].second.fixed.push_back({Plane{Vec3(0, 0, 0.01), Vec3::UnitZ()}, {false, false, true}});
   const MeshReader small = block_of(1500);
   return {
       {"finger", finger(SINEW_SHARED_MESHES, 15, 15, Cable::cosserat), io::read_mesh},
       {"finger at rest", nearly_incompressible(finger(SINEW_SHARED_MESHES, 15, 15, Cable::cosserat)), io::read_mesh},
       {"trunk", trunk(SINEW_SHARED_MESHES, 21), io::read_mesh},
       {"trunk at rest", nearly_incompressible(trunk(SINEW_SHARED_MESHES, 10)), io::read_mesh},
-      {"block beside stiff springs", sprung, small}};
+      {"block beside stiff springs", sprung, small},
+      {"block on guides", guided, small}};
 }
 
 TEST(Factor, OfScenesHasSmallBackwardErrors) {
@@ -79,6 +86,10 @@ TEST(Factor, OfScenesHasSmallBackwardErrors) {
     Linearization here;
     here.evaluate(context, state, times);
     std::string failed;
+    ASSERT_TRUE(here.factor(solid::Tangent::definite, Linearization::Wanted::any, failed)) << failed;
+    const Eigen::MatrixXd& own = here.reduced().problem.volumes[0].W;
+    const Eigen::MatrixXd rest = own - W.topLeftCorner(own.rows(), own.cols());
+    EXPECT_LT(Eigen::MatrixXd(rest.triangularView<Eigen::Lower>()).norm(), 1e-12 * W.norm());
     ASSERT_TRUE(here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) << failed;
     Increment increment;
     here.solve(increment);
@@ -86,6 +97,39 @@ TEST(Factor, OfScenesHasSmallBackwardErrors) {
     EXPECT_LT(increment.reduced.residual, 1e-12);
     RecordProperty(std::string("dense_") + sample.name, std::to_string(dense_apart * 1e12) + "e-12");
     RecordProperty(std::string("coupled_") + sample.name, std::to_string(increment.reduced.residual * 1e16) + "e-16");
+  }
+}
+
+/// The abscissae of a cable are tied to its own points alone. Where these follow one another in the border, a third of
+/// its factorisation falls away.
+TEST(Border, CablesFollowOneAnother) {
+  const Model model = build(trunk(SINEW_SHARED_MESHES, 10), io::read_mesh);
+  const State state = initial_state(model);
+  const StepContext context = make_context(model, state, command_at(model, 0.0), model.scene.time.step);
+  StageTimes times;
+  Linearization here;
+  here.evaluate(context, state, times);
+  std::string failed;
+  ASSERT_TRUE(here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) << failed;
+  const solve::CoupledProblem& problem = here.reduced().problem;
+  ASSERT_EQ(problem.chains.size(), 4U);
+  solve::BorderOrder order;
+  order.set(problem);
+  int next = 0;
+  for (const solve::ChainPart& part : problem.chains) {
+    std::vector<int> rows;
+    for (const int own : part.at) {
+      if (order.yields(own)) rows.push_back(order.place()[static_cast<std::size_t>(own)]);
+    }
+    std::sort(rows.begin(), rows.end());
+    ASSERT_EQ(rows.size(), 30U);
+    EXPECT_EQ(rows.front(), next);
+    EXPECT_EQ(rows.back(), next + 29);
+    for (const int own : part.at) {
+      const auto place = static_cast<std::size_t>(order.place()[static_cast<std::size_t>(own)]);
+      if (!order.yields(own)) EXPECT_EQ(order.begin()[place], next);
+    }
+    next += 30;
   }
 }
 

@@ -261,14 +261,23 @@ template <class Real>
 void FrontPanels<Real>::kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const {
   const Eigen::Index n = rows.empty() ? 0 : rows.back().into + rows.back().length;
   W.resize(n, n);
+  const auto take = [&]<int size>(const Run& own, const Run& other) {  // size: of both, if it is known
+    auto to = W.block<size, size>(other.into, own.into, other.length, own.length);
+    if (own.row <= other.row) {
+      to = -minus_W_.template block<size, size>(other.row, own.row, other.length, own.length).template cast<double>();
+    } else {
+      to = -minus_W_.template block<size, size>(own.row, other.row, own.length, other.length)
+                .transpose()
+                .template cast<double>();
+    }
+  };
   for (std::size_t at = 0; at < rows.size(); ++at) {
-    const Run& own = rows[at];
-    for (int j = 0; j < own.length; ++j) {
-      const auto from = minus_W_.col(own.row + j);
-      auto to = W.col(own.into + j);
-      to.segment(own.into + j, own.length - j) = -from.segment(own.row + j, own.length - j).template cast<double>();
-      for (const Run& other : rows.subspan(at + 1))
-        to.segment(other.into, other.length) = -from.segment(other.row, other.length).template cast<double>();
+    for (const Run& other : rows.subspan(at)) {
+      if (rows[at].length == 3 && other.length == 3) {  // of points, as most are
+        take.template operator()<3>(rows[at], other);
+      } else {
+        take.template operator()<Eigen::Dynamic>(rows[at], other);
+      }
     }
   }
 }

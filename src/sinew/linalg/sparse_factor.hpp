@@ -85,8 +85,8 @@ class SparseFactor {
 
   /// W = H A^-1 H^T, in the order of the rows.
   Eigen::MatrixXd compliance() const;
-  /// Some of its rows and columns, in the order in which they are kept, Fronts::border: these runs, ascending, one
-  /// after the other. Above the diagonal stands anything. And one column, whole, in that order.
+  /// Some of its rows and columns: these runs of the order in which they are kept, Fronts::border, none twice, one
+  /// after the other. Above the diagonal stands anything. And one column, whole, in the order in which they are kept.
   void kept_compliance(std::span<const Run> rows, Eigen::MatrixXd& W) const;
   void kept_column(int place, Eigen::VectorXd& column) const;
   /// u = H R^T S y: H A^-1 b for y = R b.

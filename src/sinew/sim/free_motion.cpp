@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "sinew/sim/clock.hpp"
@@ -21,12 +20,6 @@ void each_load(const StepContext& context, int number, const Visit& visit) {
     const SolidLoadModel* load = std::get_if<SolidLoadModel>(&context.model.loads[i].on);
     if (load && load->solid == number) visit(*load, context.command.loads[i]);
   }
-}
-
-/// Some numbers of a vector, in the memory of earlier ones (an indexed view of Eigen's would copy the indices).
-void pick(const Eigen::VectorXd& from, const std::vector<int>& at, Eigen::VectorXd& picked) {
-  picked.resize(static_cast<Eigen::Index>(at.size()));
-  for (Eigen::Index i = 0; i < picked.size(); ++i) picked[i] = from[at[i]];
 }
 
 bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
@@ -113,7 +106,7 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   if (!factor_->factor(crew, &right)) return false;
   clock.next(times.compliance);
   volume.at.clear();
-  for (const int k : kept_) volume.at.push_back(row_of(model, context.model, k));
+  for (int k = 0; k < kept_places_.size(); ++k) volume.at.push_back(row_of(model, context.model, k));
   factor_->kept_compliance(runs_, volume.W);
   watched_.resize(volume.W.rows(), static_cast<Eigen::Index>(3 * model.watched.size()));
   for (Eigen::Index k = 0; k < watched_.cols(); ++k) {
@@ -131,14 +124,10 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
 
 void FreeMotion::plan(const SolidModel& model) {
   const std::vector<int>& place = model.fronts->border;
-  kept_.resize(3 * model.rows.size());
-  std::iota(kept_.begin(), kept_.end(), 0);
-  std::sort(kept_.begin(), kept_.end(), [&place](int a, int b) { return place[a] < place[b]; });
-  kept_places_.resize(static_cast<Eigen::Index>(kept_.size()));
-  std::transform(kept_.begin(), kept_.end(), kept_places_.begin(), [&place](int own) { return place[own]; });
+  kept_places_ = Eigen::VectorXi::Map(place.data(), static_cast<Eigen::Index>(3 * model.rows.size()));
   runs_.clear();
   for (int i = 0; i < kept_places_.size(); ++i) {
-    if (i > 0 && kept_places_[i] == kept_places_[i - 1] + 1) {
+    if (i % 3 > 0 && kept_places_[i] == kept_places_[i - 1] + 1) {
       ++runs_.back().length;
     } else {
       runs_.push_back({kept_places_[i], i, 1});
@@ -172,7 +161,7 @@ void FreeMotion::add_rim(const StepContext& context, const State& iterate, int n
   const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
   Z_ = (Eigen::MatrixXd::Identity(N_.rows(), N_.cols()) + N_ * C).partialPivLu().solve(N_);
-  const Eigen::MatrixXd kept = HY(kept_, Eigen::all);
+  const auto kept = HY.topRows(kept_places_.size());
   W = Eigen::MatrixXd(W.selfadjointView<Eigen::Lower>()) - kept * Z_ * kept.transpose();
   watched_ -= (HY.bottomRows(watched_.cols()) * Z_ * kept.transpose()).transpose();
 }
@@ -211,11 +200,10 @@ void FreeMotion::watched_motion(const SolidModel& model, const Model& whole, con
                                 bool pushed, Eigen::Ref<Eigen::VectorXd> motion) {
   if (model.watched.empty()) return;
   gather(model, whole, dlambda);
-  pick(rows_, kept_, acting_);
   for (std::size_t k = 0; k < model.watched.size(); ++k) {
     const auto first = static_cast<Eigen::Index>(3 * k), own = static_cast<Eigen::Index>(3 * model.rows.size()) + first;
     auto moved = motion.segment<3>(3 * model.watched[k]);
-    moved.noalias() = watched_.middleCols<3>(first).transpose().lazyProduct(acting_);
+    moved.noalias() = watched_.middleCols<3>(first).transpose().lazyProduct(rows_.head(watched_.rows()));
     if (pushed) moved += free_.segment<3>(own);
   }
 }
@@ -289,16 +277,16 @@ double FreeMotion::leave(const SolidModel& model, const Model& whole, const solv
                          Eigen::VectorXd& c) {
   gather(model, whole, dlambda);
   solid::at_unknowns(model.body, dx, x_);
-  const auto rows = static_cast<Eigen::Index>(kept_.size());
-  pick(rows_, kept_, acting_);
+  const Eigen::Index rows = kept_places_.size();
+  const auto acting = rows_.head(rows);
   half_.resize(rows);
   if (volume.symmetric) {
-    half_.noalias() = volume.W.selfadjointView<Eigen::Lower>() * acting_;
+    half_.noalias() = volume.W.selfadjointView<Eigen::Lower>() * acting;
   } else {
-    half_.noalias() = volume.W.lazyProduct(acting_);
+    half_.noalias() = volume.W.lazyProduct(acting);
   }
-  for (Eigen::Index i = 0; i < rows; ++i) free_[kept_[i]] += half_[i];
-  for (const int k : kept_) {
+  free_.head(rows) += half_;
+  for (int k = 0; k < rows; ++k) {
     double motion = 0.0;
     for (int at = model.border.outerIndexPtr()[k]; at < model.border.outerIndexPtr()[k + 1]; ++at) {
       const double weight = factor_->border_values()[at];

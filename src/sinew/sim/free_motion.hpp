@@ -79,21 +79,20 @@ class FreeMotion {
   /// V y.
   const Eigen::VectorXd& with_rim(const Eigen::VectorXd& y);
 
-  // Border rows are those of the model's couplings, three each, then of watched points: so stand rows_ and free_. The
-  // factor keeps them in an order of its own, Fronts::border: so stand W and watched_. c and dlambda are the scene's.
+  // Border rows are those of the model's couplings, three each, then of watched points: so stand rows_, free_, W and
+  // watched_. The factor keeps them in an order of its own, Fronts::border. c and dlambda are the scene's.
   std::optional<linalg::SparseFactor> factor_;
-  std::vector<int> kept_;          ///< border rows that are rows of the scene, in the order in which they are kept
-  Eigen::VectorXi kept_places_;    ///< and their places in that order
-  std::vector<linalg::Run> runs_;  ///< the same in runs
+  Eigen::VectorXi kept_places_;    ///< of the border rows that are rows of the scene, Fronts::border
+  std::vector<linalg::Run> runs_;  ///< the same in runs, of one coupling each
   Eigen::MatrixXd watched_;        ///< how far a force on each of them moves a watched row, a column per watched row
   Eigen::VectorXd free_;           ///< motion of the border rows by the push
   std::vector<int> rim_;           ///< unknowns of P
   Eigen::MatrixXd N_, Y_, Z_;      ///< V = 1 - Y Z Y^T S; empty where A is symmetric
   Eigen::VectorXd y_, turned_, rows_, x_;
-  Eigen::VectorXd push_, pushed_, moved_;   ///< what the forces left unbalanced, half solved
-  std::vector<int> reach_;                  ///< where rows of contacts may have entries
-  Eigen::MatrixXd contacts_, coupled_;      ///< R H_c^T there, and H A^-1 H_c^T
-  Eigen::VectorXd half_, acting_, column_;  ///< room
+  Eigen::VectorXd push_, pushed_, moved_;  ///< what the forces left unbalanced, half solved
+  std::vector<int> reach_;                 ///< where rows of contacts may have entries
+  Eigen::MatrixXd contacts_, coupled_;     ///< R H_c^T there, and H A^-1 H_c^T
+  Eigen::VectorXd half_, column_;          ///< room
 };
 
 }  // namespace sinew

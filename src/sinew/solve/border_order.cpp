@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace sinew::solve {
 
@@ -78,7 +79,18 @@ void BorderOrder::find(const CoupledProblem& problem) {
   for (int i = nz; i < size; ++i) {
     if (place_[i] == kNone) place_[i] = next++;
   }
-  begin_.resize(static_cast<std::size_t>(size));
+  find_begins(problem);
+  held_.resize(static_cast<std::size_t>(nz));  // coordinates that begin together stay together
+  std::iota(held_.begin(), held_.end(), 0);
+  std::sort(held_.begin(), held_.end(),
+            [this](int a, int b) { return std::pair(begin_[place_[a]], a) < std::pair(begin_[place_[b]], b); });
+  for (int i = 0; i < nz; ++i) place_[held_[i]] = yielding_ + i;
+  find_begins(problem);
+}
+
+void BorderOrder::find_begins(const CoupledProblem& problem) {
+  const auto nz = static_cast<int>(problem.r.size());
+  begin_.resize(place_.size());
   std::iota(begin_.begin(), begin_.end(), 0);
   const auto tie = [&](int i, int j) {
     const auto [first, last] = std::minmax(place_[i], place_[j]);

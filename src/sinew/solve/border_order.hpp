@@ -8,7 +8,8 @@
 namespace sinew::solve {
 
 /// Rows that feel a compliance have negative pivots, what they hold then positive ones; the rest are rows again. In
-/// this order a row of the matrix begins with the first unknown that anything ties it to.
+/// this order a row of the matrix begins with the first unknown that anything ties it to. Volumes' rows stand as they
+/// come: whoever numbers them puts together what one chain is tied to. z stands in the order in which it begins.
 class BorderOrder {
  public:
   /// Found again only where other places of the problem hold numbers than before.
@@ -21,8 +22,10 @@ class BorderOrder {
 
  private:
   void find(const CoupledProblem& problem);
+  void find_begins(const CoupledProblem& problem);  ///< once all have their places
 
   std::vector<int> place_, begin_;
+  std::vector<int> held_;            ///< room
   std::vector<int> pattern_, next_;  ///< sizes, and where there are numbers
   int yielding_ = 0;
 };

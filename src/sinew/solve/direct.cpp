@@ -76,11 +76,15 @@ class Half {
         Eigen::VectorXd::Map(factor_.column(own) + own, n - b) -= M.col(b).tail(n - b);
         continue;
       }
-      factor_.column(own)[own] -= M(b, b);
+      double* const column = factor_.column(own);
+      column[own] -= M(b, b);
       for (int a = b + 1; a < n; ++a) {
         const int other = places_[a];
-        // The same unknown twice stands on both sides of the diagonal.
-        factor_.column(std::min(own, other))[std::max(own, other)] -= (own == other ? 2.0 : 1.0) * M(a, b);
+        if (other > own) {
+          column[other] -= M(a, b);
+        } else {  // above the diagonal; the same unknown twice stands on both sides of it
+          factor_.column(other)[own] -= (own == other ? 2.0 : 1.0) * M(a, b);
+        }
       }
     }
   }
