@@ -241,13 +241,14 @@ std::string profile(const RunSummary& summary) {
   for (const StageTimes& own : summary.times) sum += own;
   const auto steps = static_cast<double>(summary.times.size());
   std::string text =
-      fmt::format("Time of {} steps, {} threads\n  {:<11} {:>10} {:>10} {:>8}  {}\n", summary.times.size(),
-                  summary.threads, "stage", "mean [ms]", "all [s]", "share", "what");
+      fmt::format("Time of {} steps, {} thread{}\n  {:<11} {:>10} {:>10} {:>8}  {}\n", summary.times.size(),
+                  summary.threads, summary.threads == 1 ? "" : "s", "stage", "mean [ms]", "all [s]", "share", "what");
   for (const Stage& stage : kStages) {
     const double own = sum.*stage.seconds;
     text += fmt::format("  {:<11} {:>10.4f} {:>10.3f} {:>7.1f}%  {}\n", stage.name, 1e3 * own / steps, own,
                         100.0 * own / sum.step, stage.what);
   }
+  text += "A step is its stages and what lies between them. Writing results is not part of it.\n";
   if (summary.threads > 1) text += "Stages of several threads run beside each other; their times are added.\n";
   return text;
 }
