@@ -105,13 +105,15 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
   const linalg::HalfSolve right{push_, pushed_, &moved_};
   if (!factor_->factor(crew, &right)) return false;
   clock.next(times.compliance);
+  const std::vector<int>& place = model.fronts->border;
+  const auto rows = static_cast<int>(3 * model.rows.size());
   volume.at.clear();
-  for (int k = 0; k < kept_places_.size(); ++k) volume.at.push_back(row_of(model, context.model, k));
+  for (int k = 0; k < rows; ++k) volume.at.push_back(row_of(model, context.model, k));
   factor_->kept_compliance(runs_, volume.W);
-  watched_.resize(volume.W.rows(), static_cast<Eigen::Index>(3 * model.watched.size()));
+  watched_.resize(rows, static_cast<Eigen::Index>(3 * model.watched.size()));
   for (Eigen::Index k = 0; k < watched_.cols(); ++k) {
-    factor_->kept_column(model.fronts->border[3 * model.rows.size() + static_cast<std::size_t>(k)], column_);
-    for (Eigen::Index j = 0; j < watched_.rows(); ++j) watched_(j, k) = column_[kept_places_[j]];
+    factor_->kept_column(place[rows + k], column_);
+    for (int j = 0; j < rows; ++j) watched_(j, k) = column_[place[j]];
   }
   rim_.clear();
   N_.resize(0, 0);
@@ -124,13 +126,12 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
 
 void FreeMotion::plan(const SolidModel& model) {
   const std::vector<int>& place = model.fronts->border;
-  kept_places_ = Eigen::VectorXi::Map(place.data(), static_cast<Eigen::Index>(3 * model.rows.size()));
   runs_.clear();
-  for (int i = 0; i < kept_places_.size(); ++i) {
-    if (i % 3 > 0 && kept_places_[i] == kept_places_[i - 1] + 1) {
+  for (int i = 0; i < static_cast<int>(3 * model.rows.size()); ++i) {
+    if (i % 3 > 0 && place[i] == place[i - 1] + 1) {
       ++runs_.back().length;
     } else {
-      runs_.push_back({kept_places_[i], i, 1});
+      runs_.push_back({place[i], i, 1});
     }
   }
   factor_.emplace(model.fronts);  // last: memory may run out
@@ -161,7 +162,7 @@ void FreeMotion::add_rim(const StepContext& context, const State& iterate, int n
   const Eigen::MatrixXd C = Y_.transpose() * factor_->signs().asDiagonal() * Y_;
   // N (1 + C N)^-1 = (1 + N C)^-1 N
   Z_ = (Eigen::MatrixXd::Identity(N_.rows(), N_.cols()) + N_ * C).partialPivLu().solve(N_);
-  const auto kept = HY.topRows(kept_places_.size());
+  const auto kept = HY.topRows(W.rows());
   W = Eigen::MatrixXd(W.selfadjointView<Eigen::Lower>()) - kept * Z_ * kept.transpose();
   watched_ -= (HY.bottomRows(watched_.cols()) * Z_ * kept.transpose()).transpose();
 }
@@ -277,7 +278,7 @@ double FreeMotion::leave(const SolidModel& model, const Model& whole, const solv
                          Eigen::VectorXd& c) {
   gather(model, whole, dlambda);
   solid::at_unknowns(model.body, dx, x_);
-  const Eigen::Index rows = kept_places_.size();
+  const Eigen::Index rows = volume.W.rows();
   const auto acting = rows_.head(rows);
   half_.resize(rows);
   if (volume.symmetric) {

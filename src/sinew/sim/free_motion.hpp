@@ -82,8 +82,7 @@ class FreeMotion {
   // Border rows are those of the model's couplings, three each, then of watched points: so stand rows_, free_, W and
   // watched_. The factor keeps them in an order of its own, Fronts::border. c and dlambda are the scene's.
   std::optional<linalg::SparseFactor> factor_;
-  Eigen::VectorXi kept_places_;    ///< of the border rows that are rows of the scene, Fronts::border
-  std::vector<linalg::Run> runs_;  ///< the same in runs, of one coupling each
+  std::vector<linalg::Run> runs_;  ///< where it keeps those of couplings, each run of one of them
   Eigen::MatrixXd watched_;        ///< how far a force on each of them moves a watched row, a column per watched row
   Eigen::VectorXd free_;           ///< motion of the border rows by the push
   std::vector<int> rim_;           ///< unknowns of P
