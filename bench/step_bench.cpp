@@ -209,6 +209,9 @@ int run_all(const std::filesystem::path& meshes, const std::string& wanted, int 
     go("finger, 7 points", finger(meshes, 6, 7, Cable::cosserat), finger_tip, io::read_mesh, turns);
     go("finger, 15 points", finger(meshes, 15, 15, Cable::cosserat), finger_tip, io::read_mesh, turns);
     go("finger, geometric", finger(meshes, 1, 15, Cable::geometric), finger_tip, io::read_mesh, turns);
+    Scene rubber = finger(meshes, 6, 7, Cable::cosserat);
+    for (auto& [name, solid] : rubber.solids) solid.material.law = solid::neo_hookean(600e3, 0.45);
+    go("finger, neo-Hookean", rubber, finger_tip, io::read_mesh, turns);
     go("trunk, 10 points", trunk(meshes, 10), trunk_tip, io::read_mesh, turns);
     go("trunk, 21 points", trunk(meshes, 21), trunk_tip, io::read_mesh, turns);
   } else {

@@ -49,7 +49,7 @@ struct Corotational {
 inline Corotational corotational(double young, double poisson) { return {young, poisson, lame(young, poisson)}; }
 
 inline Part Corotational::shape(const Mat3& F, const Turning& turning, Derivatives wanted) const {
-  Part w;
+  Part w(wanted);
   const Mat3 strain = F - turning.R;
   w.value = moduli.mu * strain.squaredNorm();
   if (wanted != Derivatives::none)
@@ -62,7 +62,7 @@ inline Part Corotational::shape(const Mat3& F, const Turning& turning, Derivativ
 }
 
 inline Part Corotational::dilatation(const Mat3& F, const Turning& turning, Derivatives wanted) const {
-  Part v;
+  Part v(wanted);
   v.value = turning.R.cwiseProduct(F).sum() - 3.0;
   if (wanted != Derivatives::none) v.first = turning.R;
   if (wanted == Derivatives::second && !turning.frozen) v.second = turning.slope;

@@ -34,7 +34,7 @@ inline void add_determinant_second(const Mat3& F, double factor, Mat9& out) {
 
 /// J as the dilatation of a law.
 inline Part determinant(const Mat3& F, Derivatives wanted) {
-  Part J;
+  Part J(wanted);
   const Mat3 C = cofactor(F);
   J.value = F.col(0).dot(C.col(0));
   if (wanted == Derivatives::none) return J;

@@ -14,14 +14,20 @@ namespace sinew::solid {
 
 using Mat9 = Eigen::Matrix<double, 9, 9>;
 
-/// Which derivatives are wanted: those not asked for are left as they are.
+/// Which derivatives are wanted. First ones not asked for are 0, second ones not set.
 enum class Derivatives { none, first, second };
 
 /// A function of the deformation gradient F. Second derivatives over vec(F), its columns one below another.
 struct Part {
   double value = 0.0;         ///< [J/m^3], or [-] of a dilatation
   Mat3 first = Mat3::Zero();  ///< d/dF
-  Mat9 second = Mat9::Zero();
+  Mat9 second;
+
+  Part() = default;
+  /// Second derivatives 0 where they are wanted only: clearing them takes as long as finding a force.
+  explicit Part(Derivatives wanted) {
+    if (wanted == Derivatives::second) second.setZero();
+  }
 };
 
 /// U and its derivatives at a dilatation.
@@ -44,6 +50,7 @@ struct Lame {
   double lambda = 0.0;  ///< [Pa]
 };
 
+/// Without directions: w and v are functions of F's stretches (`principal` relies on it).
 /// kInvertible: defined for det F <= 0, too; else w is infinite there and its derivatives are 0.
 template <class L>
 concept ConstitutiveLaw = requires(const L& law, const Mat3& F, double v, Derivatives wanted) {

@@ -36,10 +36,4 @@ double von_mises(const Mat3& cauchy) {
   return std::sqrt(1.5) * deviator.norm();
 }
 
-Mat9 positive_semidefinite(const Mat9& K) {
-  const Eigen::SelfAdjointEigenSolver<Mat9> eigen(K);
-  const Mat9& Q = eigen.eigenvectors();
-  return Q * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * Q.transpose();
-}
-
 }  // namespace sinew::solid

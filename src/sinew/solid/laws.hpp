@@ -58,7 +58,4 @@ Mat3 cauchy_stress(const Mat3& P, const Mat3& F);
 /// sqrt(3/2) times the norm of the deviator [Pa].
 double von_mises(const Mat3& cauchy);
 
-/// The nearest positive semi-definite matrix: negative eigenvalues of the symmetric K become 0.
-Mat9 positive_semidefinite(const Mat9& K);
-
 }  // namespace sinew::solid

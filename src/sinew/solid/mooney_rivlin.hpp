@@ -39,7 +39,7 @@ inline Part MooneyRivlin::shape(const Mat3& F, Derivatives wanted) const {
 }
 
 inline Part MooneyRivlin::isochoric(const Mat3& F, Derivatives wanted) const {
-  Part w;
+  Part w(wanted);
   const Mat3 cof = cofactor(F);
   const double J = F.col(0).dot(cof.col(0));
   if (!(J > 0.0)) {

@@ -21,7 +21,7 @@ struct NeoHookean {
   Lame moduli;
 
   Part shape(const Mat3& F, Derivatives wanted) const {
-    Part w;
+    Part w(wanted);
     const double mu = 4.0 / 3.0 * moduli.mu;
     const double I = F.squaredNorm(), part = 1.0 / (I + 1.0);
     w.value = 0.5 * mu * (I - 3.0 - std::log1p(0.25 * (I - 3.0)));

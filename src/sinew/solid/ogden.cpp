@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/solid/principal.hpp"
+
 namespace sinew::solid {
 
 Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given) {
@@ -16,32 +18,6 @@ Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given) {
   }
   law.moduli = lame_from_bulk(shear, bulk_modulus(shear, given));
   return law;
-}
-
-// One-sided Jacobi: turn the columns of F by pairs until they are perpendicular. Stretches keep all their digits,
-// however small, equal or close to each other (Demmel, Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
-Principal principal(const Mat3& F) {
-  constexpr int kMostSweeps = 20;
-  Mat3 A = F, V = Mat3::Identity();
-  bool turned = true;
-  for (int sweep = 0; turned && sweep < kMostSweeps; ++sweep) {
-    turned = false;
-    for (int k = 0; k < 3; ++k) {
-      const int i = k, j = (k + 1) % 3;
-      const double a = A.col(i).squaredNorm(), b = A.col(j).squaredNorm(), c = A.col(i).dot(A.col(j));
-      if (!(c * c > 1e-31 * a * b)) continue;
-      turned = true;
-      const double z = 0.5 * (b - a) / c, t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
-      const double cosine = 1.0 / std::sqrt(1.0 + t * t), sine = cosine * t;
-      for (Mat3* M : {&A, &V}) {
-        const Vec3 x = M->col(i), y = M->col(j);
-        M->col(i) = cosine * x - sine * y;
-        M->col(j) = sine * x + cosine * y;
-      }
-    }
-  }
-  const Vec3 stretch = A.colwise().norm();
-  return {A * stretch.cwiseInverse().asDiagonal(), V, stretch};
 }
 
 Part Ogden::shape(const Mat3& F, Derivatives wanted) const {
@@ -57,7 +33,7 @@ Part Ogden::shape(const Mat3& F, Derivatives wanted) const {
 // The first without a difference of near numbers:
 //     (b_i - b_j) / (l_i - l_j) = sqrt(b_i b_j / (l_i l_j)) sinh(alpha h) / sinh h,   h = (x_i - x_j) / 2.
 Part Ogden::isochoric(const Mat3& F, Derivatives wanted) const {
-  Part w;
+  Part w(wanted);
   if (!(F.determinant() > 0.0)) {
     w.value = std::numeric_limits<double>::infinity();
     return w;

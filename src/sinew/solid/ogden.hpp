@@ -39,11 +39,4 @@ struct Ogden {
 /// From at most kMostTerms terms.
 Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given);
 
-/// F = U diag(stretch) V^T for det F > 0, U and V both proper or both improper; stretches in no order.
-struct Principal {
-  Mat3 U, V;
-  Vec3 stretch;
-};
-Principal principal(const Mat3& F);
-
 }  // namespace sinew::solid

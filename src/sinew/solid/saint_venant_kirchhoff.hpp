@@ -20,7 +20,7 @@ struct SaintVenantKirchhoff {
 
   /// The same where E differs from F's strain by a constant.
   Part shape(const Mat3& F, const Mat3& E, Derivatives wanted) const {
-    Part w;
+    Part w(wanted);
     w.value = moduli.mu * E.squaredNorm();
     if (wanted == Derivatives::none) return w;
     w.first = 2.0 * moduli.mu * F * E;
@@ -39,7 +39,7 @@ struct SaintVenantKirchhoff {
   }
 
   Part dilatation(const Mat3& F, const Mat3& E, Derivatives wanted) const {
-    Part v;
+    Part v(wanted);
     v.value = E.trace();
     if (wanted != Derivatives::none) v.first = F;
     if (wanted == Derivatives::second) v.second.setIdentity();

@@ -1,0 +1,79 @@
+#include "sinew/solid/principal.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace sinew::solid {
+namespace {
+
+/// Flatter than this, squares of stretches may be lost below the smallest number and U with them.
+constexpr double kFlat = 1e-100;
+
+using Vec9 = Eigen::Matrix<double, 9, 1>;
+
+void take_out_if_negative(double eigenvalue, const Vec9& direction, Mat9& C) {
+  if (eigenvalue < 0.0) C.noalias() -= (eigenvalue * direction) * direction.transpose();
+}
+
+}  // namespace
+
+// One-sided Jacobi: turn the columns of F by pairs until they are perpendicular. Stretches keep all their digits,
+// however small, equal or close to each other (Demmel, Veselic, SIAM J. Matrix Anal. Appl. 13, 1992).
+Principal principal(const Mat3& F) {
+  constexpr int kMostSweeps = 20;
+  Mat3 A = F, V = Mat3::Identity();
+  bool turned = true;
+  for (int sweep = 0; turned && sweep < kMostSweeps; ++sweep) {
+    turned = false;
+    for (int k = 0; k < 3; ++k) {
+      const int i = k, j = (k + 1) % 3;
+      const double a = A.col(i).squaredNorm(), b = A.col(j).squaredNorm(), c = A.col(i).dot(A.col(j));
+      if (!(c * c > 1e-31 * a * b)) continue;
+      turned = true;
+      const double z = 0.5 * (b - a) / c, t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
+      const double cosine = 1.0 / std::sqrt(1.0 + t * t), sine = cosine * t;
+      for (Mat3* M : {&A, &V}) {
+        const Vec3 x = M->col(i), y = M->col(j);
+        M->col(i) = cosine * x - sine * y;
+        M->col(j) = sine * x + cosine * y;
+      }
+    }
+  }
+  const Vec3 stretch = A.colwise().norm();
+  return {A * stretch.cwiseInverse().asDiagonal(), V, stretch};
+}
+
+Mat9 positive_semidefinite(const Mat9& C) {
+  const Eigen::SelfAdjointEigenSolver<Mat9> eigen(C);
+  const Mat9& Q = eigen.eigenvectors();
+  return Q * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * Q.transpose();
+}
+
+// In the principal frame changes of stretches meet each other only, and dF_ij + dF_ji and dF_ij - dF_ji nothing
+// (README).
+Mat9 positive_semidefinite(const Mat9& C, const Mat3& F) {
+  const auto [U, V, l] = principal(F);
+  if (!(l.minCoeff() > kFlat * l.maxCoeff())) return positive_semidefinite(C);
+  const auto direction = [&](int i, int j) -> Mat3 { return U.col(i) * V.col(j).transpose(); };
+  Mat9 definite = C;
+
+  Eigen::Matrix<double, 9, 3> stretches;
+  for (int i = 0; i < 3; ++i) stretches.col(i) = direction(i, i).reshaped();
+  const Eigen::Matrix<double, 9, 3> changed = C.lazyProduct(stretches);
+  const Mat3 between = stretches.transpose().lazyProduct(changed);
+  if (between.llt().info() != Eigen::Success) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(between);
+    for (int i = 0; i < 3; ++i)
+      take_out_if_negative(eigen.eigenvalues()[i], stretches * eigen.eigenvectors().col(i), definite);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Mat3 ij = direction((k + 1) % 3, (k + 2) % 3), ji = direction((k + 2) % 3, (k + 1) % 3);
+    for (const Mat3& pair : {Mat3(ij + ji), Mat3(ij - ji)}) {  // a shear and a turn of the two axes
+      const Vec9 unit = std::sqrt(0.5) * pair.reshaped();
+      take_out_if_negative(unit.dot(C.lazyProduct(unit)), unit, definite);
+    }
+  }
+  return definite;
+}
+
+}  // namespace sinew::solid
