@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "sinew/error/input_error.hpp"
@@ -61,6 +62,22 @@ TEST(Build, points_in_a_clamped_region_are_dropped_or_met_by_the_rod) {
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status) << " " << trace.failure.detail;
   for (const StepReport& report : trace.reports) EXPECT_LT(report.violation, 1e-9);
+}
+
+TEST(Signals, a_hole_in_the_clamp_is_watched_where_the_rod_was_drawn_past_it) {
+  const Model model = build(test::cable_block(), test::read_block);
+  ASSERT_EQ(model.couplings[0].no_unknown, std::vector<double>{0.0});
+  ASSERT_TRUE(model.couplings[0].redundant.empty());
+  State state = initial_state(model);
+  EXPECT_LT(dropped_gap(model, state), 1e-15);
+  const double out = 5e-3, radius = 12.5e-3;
+  Eigen::VectorXd& q = state.rods[0].q;
+  for (Eigen::Index i = 2; i < q.size(); i += 3)
+    q[i] = 1.0 / radius;  // base, then torsion and bendings of each section
+  q[0] = out;
+  EXPECT_NEAR(dropped_gap(model, state), std::hypot(out, radius) - radius, 1e-9);
+  q[0] = -out;  // pushed in: the rod begins beyond the hole
+  EXPECT_EQ(dropped_gap(model, state), 0.0);
 }
 
 TEST(Build, twice_the_same_motion_of_a_rod_is_refused) {

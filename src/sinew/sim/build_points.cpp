@@ -106,6 +106,7 @@ std::vector<PointModel> independent_points(Model& model, const std::vector<Point
       if (!of_this_kind(point)) continue;
       if (held && !point.fixed && point.abscissa <= 1e-9 * length_of(model, line)) {
         facts.no_unknown.push_back(point.abscissa);
+        model.dropped.push_back(point);  // pulled out, the rod would be led there
       } else {
         (point.fixed ? points : others).push_back(point);
       }

@@ -279,7 +279,7 @@ struct Model {
   std::vector<PairModel> pairs;
   std::vector<int> rubbing;  ///< points with friction
   std::vector<PointModel> points;
-  std::vector<PointModel> dropped;  ///< asked for, but determined by others: no rows, only watched
+  std::vector<PointModel> dropped;  ///< asked for, but determined by others or by what is held: no rows, only watched
   std::vector<TieModel> ties;
   std::vector<SolidRow> solid_rows;
   std::vector<EffectorModel> effectors;

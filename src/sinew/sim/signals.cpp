@@ -135,7 +135,7 @@ double dropped_gap(const Model& model, const State& state) {
     }
     const Vec3 P = solid_point(model, state, point.solid, point.where);
     s = constraint::project(shape, s, P);
-    if (s <= rod.length()) gap = std::max(gap, constraint::violation(rod::curve_point(shape, s), P));
+    if (s >= 0.0 && s <= rod.length()) gap = std::max(gap, constraint::violation(rod::curve_point(shape, s), P));
   }
   return gap;
 }
