@@ -182,6 +182,17 @@ TEST_P(EveryBody, definite_tangent_is_semi_definite_and_exact_at_rest) {
   EXPECT_GT(smallest_eigenvalue(K), -1e-12 * K.norm());
 }
 
+TEST_P(EveryBody, definite_tangent_lacks_only_what_is_negative) {
+  if (std::holds_alternative<Corotational>(law)) GTEST_SKIP() << "has a definite tangent of its own";
+  Eigen::Matrix3Xd crushed = deformed(body, 0.1);
+  crushed.row(1) *= 0.6;
+  const Eigen::MatrixXd definite = dense_tangent(body, still(body), crushed, Tangent::definite),
+                        lacking = definite - dense_tangent(body, still(body), crushed, Tangent::exact);
+  EXPECT_GT(smallest_eigenvalue(definite), -1e-12 * definite.norm());
+  EXPECT_GT(smallest_eigenvalue(lacking), -1e-12 * definite.norm());
+  EXPECT_GT(lacking.norm(), 1e-3 * definite.norm());
+}
+
 TEST_P(EveryBody, only_rigid_motions_cost_nothing) {
   Mesh one = test::block_mesh(1, 1, 1, Vec3(10e-3, 10e-3, 10e-3), kind);
   one.cells.resize(1);

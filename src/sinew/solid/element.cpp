@@ -207,9 +207,9 @@ NodeVectors shape_slopes(Kind kind, const Vec3& xi) {
 }
 
 std::span<const GaussPoint> quadrature(Kind kind) {
-  static const std::array<GaussPoint, point_count(Kind::tet4)> tet4 = {{{{0.25, 0.25, 0.25}, 1.0 / 6.0}}};
-  static const std::array<GaussPoint, point_count(Kind::tet10)> tet10 = four_points();
-  static const std::array<GaussPoint, point_count(Kind::hex8)> hex8 = cube(kTwoPoints);
+  static const std::array<GaussPoint, 1> tet4 = {{{{0.25, 0.25, 0.25}, 1.0 / 6.0}}};
+  static const auto tet10 = four_points();
+  static const auto hex8 = cube(kTwoPoints);
   if (kind == Kind::tet4) return tet4;
   if (kind == Kind::tet10) return tet10;
   return hex8;

@@ -13,12 +13,9 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
 enum class Kind : std::uint8_t { tet4, tet10, hex8 };
-inline constexpr int kMostNodes = 10;  ///< of an element
+inline constexpr int kMostNodes = 10, kMostPoints = 8;  ///< of an element, and of its quadrature
 
 constexpr int node_count(Kind kind) { return kind == Kind::tet4 ? 4 : kind == Kind::tet10 ? 10 : 8; }
-constexpr int point_count(Kind kind) {
-  return kind == Kind::tet4 ? 1 : kind == Kind::tet10 ? 4 : 8;
-}  ///< of `quadrature`
 constexpr int corner_count(Kind kind) { return kind == Kind::hex8 ? 8 : 4; }
 const char* plural(Kind kind);  ///< "tetrahedra", "10-node tetrahedra", "hexahedra"
 const char* name(Kind kind);    ///< "4-node tetrahedron", "10-node tetrahedron", "8-node hexahedron"

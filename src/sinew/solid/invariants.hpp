@@ -9,8 +9,6 @@
 
 namespace sinew::solid {
 
-using Vec9 = Eigen::Matrix<double, 9, 1>;
-
 inline Mat3 green_strain(const Mat3& F) { return 0.5 * (F.transpose() * F - Mat3::Identity()); }
 
 /// dJ/dF = J F^-T, also where J = 0.

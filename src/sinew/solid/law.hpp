@@ -12,6 +12,7 @@
 
 namespace sinew::solid {
 
+using Vec9 = Eigen::Matrix<double, 9, 1>;
 using Mat9 = Eigen::Matrix<double, 9, 9>;
 
 /// Which derivatives are wanted. First ones not asked for are 0, second ones not set.
@@ -50,7 +51,7 @@ struct Lame {
   double lambda = 0.0;  ///< [Pa]
 };
 
-/// Without directions: w and v are functions of F's stretches (`principal` relies on it).
+/// Without directions: w and v are functions of F's stretches and of the sign of det F (`principal` relies on it).
 /// kInvertible: defined for det F <= 0, too; else w is infinite there and its derivatives are 0.
 template <class L>
 concept ConstitutiveLaw = requires(const L& law, const Mat3& F, double v, Derivatives wanted) {

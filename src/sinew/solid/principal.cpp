@@ -1,19 +1,14 @@
 #include "sinew/solid/principal.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 namespace sinew::solid {
 namespace {
 
-/// Flatter than this, squares of stretches may be lost below the smallest number and U with them.
-constexpr double kFlat = 1e-100;
-
-using Vec9 = Eigen::Matrix<double, 9, 1>;
-
-void take_out_if_negative(double eigenvalue, const Vec9& direction, Mat9& C) {
-  if (eigenvalue < 0.0) C.noalias() -= (eigenvalue * direction) * direction.transpose();
-}
+/// Flatter than this, fourth powers of stretches, which Jacobi compares, come near the smallest number.
+constexpr double kFlat = 1e-60;
 
 }  // namespace
 
@@ -49,31 +44,37 @@ Mat9 positive_semidefinite(const Mat9& C) {
   return Q * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * Q.transpose();
 }
 
-// In the principal frame changes of stretches meet each other only, and dF_ij + dF_ji and dF_ij - dF_ji nothing
-// (README).
 Mat9 positive_semidefinite(const Mat9& C, const Mat3& F) {
-  const auto [U, V, l] = principal(F);
-  if (!(l.minCoeff() > kFlat * l.maxCoeff())) return positive_semidefinite(C);
-  const auto direction = [&](int i, int j) -> Mat3 { return U.col(i) * V.col(j).transpose(); };
-  Mat9 definite = C;
+  const Principal frame = principal(F / F.cwiseAbs().maxCoeff());
+  if (!(frame.stretch.minCoeff() > kFlat)) return positive_semidefinite(C);
+  const auto direction = [&](int i, int j) -> Mat3 { return frame.U.col(i) * frame.V.col(j).transpose(); };
+  Mat9 root;  // what is positive of C is root root^T
+  bool positive = true;
 
   Eigen::Matrix<double, 9, 3> stretches;
   for (int i = 0; i < 3; ++i) stretches.col(i) = direction(i, i).reshaped();
   const Eigen::Matrix<double, 9, 3> changed = C.lazyProduct(stretches);
   const Mat3 between = stretches.transpose().lazyProduct(changed);
-  if (between.llt().info() != Eigen::Success) {
+  if (const Eigen::LLT<Mat3> factor(between); factor.info() == Eigen::Success) {
+    root.leftCols<3>() = stretches.lazyProduct(Mat3(factor.matrixL()));
+  } else {
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(between);
-    for (int i = 0; i < 3; ++i)
-      take_out_if_negative(eigen.eigenvalues()[i], stretches * eigen.eigenvectors().col(i), definite);
+    const Mat3 axes = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    root.leftCols<3>() = stretches.lazyProduct(axes);
+    positive = false;
   }
+  int column = 3;
   for (int k = 0; k < 3; ++k) {
     const Mat3 ij = direction((k + 1) % 3, (k + 2) % 3), ji = direction((k + 2) % 3, (k + 1) % 3);
-    for (const Mat3& pair : {Mat3(ij + ji), Mat3(ij - ji)}) {  // a shear and a turn of the two axes
+    for (const Mat3& pair : {Mat3(ij + ji), Mat3(ij - ji)}) {
       const Vec9 unit = std::sqrt(0.5) * pair.reshaped();
-      take_out_if_negative(unit.dot(C.lazyProduct(unit)), unit, definite);
+      const double eigenvalue = unit.dot(C.lazyProduct(unit));
+      root.col(column++) = std::sqrt(std::max(0.0, eigenvalue)) * unit;
+      positive = positive && eigenvalue >= 0.0;
     }
   }
-  return definite;
+  if (positive) return C;
+  return root.lazyProduct(root.transpose());
 }
 
 }  // namespace sinew::solid

@@ -5,8 +5,8 @@
 
 namespace sinew::solid {
 
-/// U and V both proper or both improper where det F > 0; stretches in no order, none of them negative. Columns of U
-/// whose stretch is 0 are not numbers.
+/// Stretches in no order, none of them negative; V is a rotation, U one where det F > 0. Columns of U whose stretch is
+/// 0 are no numbers.
 struct Principal {
   Mat3 U, V;
   Vec3 stretch;
@@ -16,8 +16,8 @@ Principal principal(const Mat3& F);
 /// The nearest positive semi-definite matrix: negative eigenvalues of the symmetric C become 0.
 Mat9 positive_semidefinite(const Mat9& C);
 
-/// The same where C = d2psi/dF2 of an isotropic density at F, for a fraction of the work: at F, C couples changes of
-/// the three stretches with each other, and those of two axes towards each other in pairs, and nothing else.
+/// The same, for a fraction of the work, where C = d2psi/dF2 of a law without directions at F: it splits in the
+/// principal frame (README, definite tangent).
 Mat9 positive_semidefinite(const Mat9& C, const Mat3& F);
 
 }  // namespace sinew::solid
