@@ -183,12 +183,12 @@ TEST_P(EveryBody, definite_tangent_is_semi_definite_and_exact_at_rest) {
 }
 
 TEST_P(EveryBody, definite_tangent_lacks_only_what_is_negative) {
-  if (std::holds_alternative<Corotational>(law)) GTEST_SKIP() << "has a definite tangent of its own";
   Eigen::Matrix3Xd crushed = deformed(body, 0.1);
   crushed.row(1) *= 0.6;
   const Eigen::MatrixXd definite = dense_tangent(body, still(body), crushed, Tangent::definite),
                         lacking = definite - dense_tangent(body, still(body), crushed, Tangent::exact);
   EXPECT_GT(smallest_eigenvalue(definite), -1e-12 * definite.norm());
+  if (std::holds_alternative<Corotational>(law)) return;  // its own is stiffer here and softer there: R K R^T
   EXPECT_GT(smallest_eigenvalue(lacking), -1e-12 * definite.norm());
   EXPECT_GT(lacking.norm(), 1e-3 * definite.norm());
 }
