@@ -94,7 +94,7 @@ TEST_P(EveryLaw, derivatives_of_the_volumetric_part_are_exact) {
   }
 }
 
-TEST_P(EveryLaw, what_is_wanted_decides_nothing_else_and_the_parts_make_the_whole) {
+TEST_P(EveryLaw, values_do_not_depend_on_what_else_is_wanted_and_the_parts_make_the_whole) {
   const Mat3 F = upright()[6].F;
   for (Derivatives wanted : {kNone, kFirst, kSecond}) {
     const Parts both = parts(law, F, wanted);
