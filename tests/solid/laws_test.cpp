@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
-#include <string>
 #include <vector>
 
 #include "solid/sample_laws.hpp"
@@ -16,7 +14,7 @@
 namespace sinew::solid {
 namespace {
 
-class EveryLaw : public testing::TestWithParam<Named> {
+class EveryLaw : public testing::TestWithParam<NamedLaw> {
  protected:
   const Law& law = GetParam().law;
   const Lame rest = lame(law);
@@ -47,7 +45,7 @@ Mat9 hooke(const Lame& rest) {
 
 TEST_P(EveryLaw, first_derivatives_are_those_of_the_value) {
   const double e = 1e-5;
-  for (const Deformation& d : within(law)) {
+  for (const SampleDeformation& d : within(law)) {
     for (int which : {0, 1, 2}) {
       const double scale = which == 1 ? 1.0 : stiffness;
       const Mat3 first = part(law, which, d.F, kFirst).first;
@@ -69,7 +67,7 @@ TEST_P(EveryLaw, first_derivatives_are_those_of_the_value) {
 
 TEST_P(EveryLaw, second_derivatives_are_those_of_the_first_and_symmetric) {
   const double e = 1e-5;
-  for (const Deformation& d : within(law)) {
+  for (const SampleDeformation& d : within(law)) {
     for (int which : {0, 1, 2}) {
       const double scale = which == 1 ? 1.0 : stiffness;
       const Mat9 second = part(law, which, d.F, kSecond).second;
@@ -117,7 +115,7 @@ TEST_P(EveryLaw, values_do_not_depend_on_what_else_is_wanted_and_the_parts_make_
 }
 
 TEST_P(EveryLaw, energy_and_stress_do_not_see_a_rotation_of_space) {
-  for (const Deformation& d : within(law)) {
+  for (const SampleDeformation& d : within(law)) {
     const Part here = density(law, d.F, kFirst), there = density(law, kOther * d.F, kFirst);
     EXPECT_NEAR(there.value, here.value, 1e-13 * (stiffness + here.value)) << d.name;
     EXPECT_LT((there.first - kOther * here.first).norm(), 1e-13 * (stiffness + here.first.norm())) << d.name;
@@ -125,7 +123,7 @@ TEST_P(EveryLaw, energy_and_stress_do_not_see_a_rotation_of_space) {
 }
 
 TEST_P(EveryLaw, the_material_has_no_directions) {
-  for (const Deformation& d : within(law)) {
+  for (const SampleDeformation& d : within(law)) {
     const Part here = density(law, d.F, kFirst), there = density(law, d.F * kOther, kFirst);
     EXPECT_NEAR(there.value, here.value, 1e-13 * (stiffness + here.value)) << d.name;
     EXPECT_LT((there.first - here.first * kOther).norm(), 1e-13 * (stiffness + here.first.norm())) << d.name;
@@ -163,14 +161,15 @@ TEST_P(EveryLaw, energy_is_nowhere_negative) {
     const Mat3 F = (seed % 3 == 0 ? Mat3(Mat3::Identity()) : Mat3(Mat3::Zero())) + 1.2 * random_matrix(seed);
     EXPECT_GE(density(law, F, kNone).value, 0.0) << F;
   }
-  for (const Deformation& d : within(law)) EXPECT_GE(density(law, d.F, kNone).value, -1e-15 * stiffness) << d.name;
+  for (const SampleDeformation& d : within(law))
+    EXPECT_GE(density(law, d.F, kNone).value, -1e-15 * stiffness) << d.name;
 }
 
 TEST_P(EveryLaw, flat_and_inverted_states_are_finite_or_refused) {
-  std::vector<Deformation> all = flat_and_inverted();
+  std::vector<SampleDeformation> all = flat_and_inverted();
   all.push_back({"a point", Mat3::Zero(), 1.0});
   all.push_back({"flat, exactly", Vec3(1.0, 2.0, 0.0).asDiagonal(), 1.0});
-  for (const Deformation& d : all) {
+  for (const SampleDeformation& d : all) {
     if (d.name == "flat") continue;  // its determinant may be rounded to either side
     const Part w = part(law, 0, d.F, kSecond), v = part(law, 1, d.F, kSecond);
     EXPECT_TRUE(v.first.allFinite() && v.second.allFinite() && std::isfinite(v.value)) << d.name;
@@ -341,7 +340,7 @@ TEST(Ogden, with_powers_2_and_minus_2_is_mooney_rivlin) {
   const Ogden ogden_law = ogden(terms, Bulk{2e6});
   const MooneyRivlin mooney = mooney_rivlin(1.2e5, 0.5e5, Bulk{2e6});
   EXPECT_NEAR(ogden_law.moduli.mu, 2 * 1.7e5, 1e-9);
-  for (const Deformation& d : upright()) {
+  for (const SampleDeformation& d : upright()) {
     const Part a = density(ogden_law, d.F, kSecond), b = density(mooney, d.F, kSecond);
     EXPECT_NEAR(a.value, b.value, 1e-14 * (2e6 + b.value)) << d.name;
     EXPECT_LT((a.first - b.first).norm(), 1e-14 * (2e6 + b.first.norm())) << d.name;
@@ -420,10 +419,10 @@ TEST(Corotational, rotated_is_positive_semi_definite_and_exact_at_rest) {
     EXPECT_LT((rotated.dilatation.first - law.dilatation(F, kFirst).first).norm(), 1e-14);
     return density(rotated, law.volumetric(rotated.dilatation.value), kSecond).second;
   };
-  std::vector<Deformation> all = within(law);
+  std::vector<SampleDeformation> all = within(law);
   all.push_back({"crushed", kTurn * Vec3(0.2, 1.0, 1.0).asDiagonal(), 1.0});
   all.push_back({"point", Mat3::Zero(), 1.0});
-  for (const Deformation& d : all) {
+  for (const SampleDeformation& d : all) {
     const Mat9 K = tangent(d.F);
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat9>(K).eigenvalues()[0], -1e-14 * K.norm()) << d.name;
     // R K R^T of linear elasticity

@@ -11,9 +11,9 @@ namespace sinew::solid {
 namespace {
 
 TEST(Principal, stretches_and_axes_give_the_deformation_back) {
-  std::vector<Deformation> all = upright();
+  std::vector<SampleDeformation> all = upright();
   all.push_back({"thin", kTurn * Vec3(1e3, 1.0, 1e-6).asDiagonal() * kOther, 1.0});
-  for (const Deformation& d : all) {
+  for (const SampleDeformation& d : all) {
     const auto [U, V, l] = principal(d.F);
     EXPECT_LT((U * l.asDiagonal() * V.transpose() - d.F).norm(), 3e-15 * d.F.norm()) << d.name;
     EXPECT_LT((U.transpose() * U - Mat3::Identity()).norm(), 3e-15) << d.name;
@@ -63,7 +63,7 @@ TEST(PositiveSemidefinite, knows_the_frame_of_a_thread_and_of_a_speck) {
         << l.transpose();
 }
 
-class MadeDefinite : public testing::TestWithParam<Named> {};
+class MadeDefinite : public testing::TestWithParam<NamedLaw> {};
 INSTANTIATE_TEST_SUITE_P(Laws, MadeDefinite, testing::ValuesIn(kLaws), [](const auto& i) { return i.param.name; });
 
 /// Second derivatives C of a law at F are made definite as any matrix is.
@@ -76,7 +76,7 @@ void expect_nearest(const Mat9& C, const Mat3& F, const std::string& name) {
 TEST_P(MadeDefinite, in_the_principal_frame_as_without_one) {
   const Law& law = GetParam().law;
   const double stiffness = 2.0 * lame(law).mu + std::abs(lame(law).lambda);
-  std::vector<Deformation> all = within(law);
+  std::vector<SampleDeformation> all = within(law);
   all.push_back({"crushed", kTurn * Vec3(0.3, 1.0, 1.1).asDiagonal() * kOther, 1.0});
   all.push_back({"pressed", kTurn * Vec3(0.5, 0.5, 0.5).asDiagonal() * kOther, 1.0});
   all.push_back({"drawn", kTurn * Vec3(3.0, 0.4, 0.4).asDiagonal() * kOther, 1.0});
@@ -87,7 +87,7 @@ TEST_P(MadeDefinite, in_the_principal_frame_as_without_one) {
     all.push_back({"a point", Mat3::Zero(), 1.0});
   }
   int indefinite = 0;
-  for (const Deformation& d : all) {
+  for (const SampleDeformation& d : all) {
     const Mat9 C = density(law, d.F, kSecond).second;
     expect_nearest(C, d.F, d.name);
     indefinite += (positive_semidefinite(C) - C).norm() > 1e-3 * C.norm();

@@ -19,14 +19,14 @@ inline constexpr Derivatives kNone = Derivatives::none, kFirst = Derivatives::fi
 inline const OgdenTerm kRubber[] = {{6.3e5, 1.3}, {1.2e3, 5.0}, {-1e4, -2.0}};  // Ogden 1972
 inline const OgdenTerm kStiffening[] = {{2e3, 17.0}};
 
-struct Named {
+struct NamedLaw {
   std::string name;
   Law law;
 };
-inline void PrintTo(const Named& named, std::ostream* out) { *out << named.name; }
+inline void PrintTo(const NamedLaw& named, std::ostream* out) { *out << named.name; }
 
 /// What is said of every law holds for each of these.
-inline const Named kLaws[] = {
+inline const NamedLaw kLaws[] = {
     {"corotational", corotational(kYoung, kPoisson)},
     {"saint_venant_kirchhoff", saint_venant_kirchhoff(kYoung, kPoisson)},
     {"neo_hookean", neo_hookean(kYoung, kPoisson)},
@@ -45,15 +45,15 @@ inline Mat3 random_matrix(unsigned seed) {
 inline const Mat3 kTurn = lie::exp(Vec3(0.9, -1.3, 0.4)), kOther = lie::exp(Vec3(-0.2, 0.7, 1.9)),
                   kHalfTurn = lie::exp(Vec3(2.0, -1.0, 0.5).normalized() * (std::numbers::pi - 1e-9));
 
-struct Deformation {
+struct SampleDeformation {
   std::string name;
   Mat3 F;
   double size;  ///< of its strain
 };
 
 /// Strains from 0 to O(1), equal and nearly equal stretches, all with large rotations.
-inline std::vector<Deformation> upright() {
-  std::vector<Deformation> all;
+inline std::vector<SampleDeformation> upright() {
+  std::vector<SampleDeformation> all;
   for (double size : {0.0, 1e-8, 1e-5, 0.3}) {
     for (const Mat3& Q : {kTurn, kHalfTurn})
       all.push_back({"strain " + std::to_string(size), Q * (Mat3::Identity() + size * random_matrix(3)), size});
@@ -68,16 +68,16 @@ inline std::vector<Deformation> upright() {
   return all;
 }
 
-inline std::vector<Deformation> flat_and_inverted() {
+inline std::vector<SampleDeformation> flat_and_inverted() {
   return {{"flat", kTurn * Vec3(1.1, 0.9, 0.0).asDiagonal() * kOther, 1.0},
           {"inverted", kTurn * Vec3(1.3, 0.8, -0.4).asDiagonal() * kOther, 1.0},
           {"mirrored", kOther * (Vec3(1.3, 0.9, -0.5).asDiagonal() * kTurn + 0.1 * random_matrix(5)), 1.0}};
 }
 
-inline std::vector<Deformation> within(const Law& law) {
-  std::vector<Deformation> all = upright();
+inline std::vector<SampleDeformation> within(const Law& law) {
+  std::vector<SampleDeformation> all = upright();
   if (invertible(law)) {
-    for (const Deformation& d : flat_and_inverted()) all.push_back(d);
+    for (const SampleDeformation& d : flat_and_inverted()) all.push_back(d);
   }
   return all;
 }

@@ -38,7 +38,8 @@ Part Ogden::isochoric(const Mat3& F, Derivatives wanted) const {
     w.value = std::numeric_limits<double>::infinity();
     return w;
   }
-  const auto [U, V, l] = principal(F);
+  const Principal frame = principal(F);
+  const auto& [U, V, l] = frame;
   const Vec3 x = l.array().log();
   const Vec3 y = x.array() - x.mean();
   const bool second = wanted == Derivatives::second;
@@ -68,24 +69,20 @@ Part Ogden::isochoric(const Mat3& F, Derivatives wanted) const {
   w.first = U * f.asDiagonal() * V.transpose();
   if (!second) return w;
 
-  Mat9 axes, bent = Mat9::Zero();  // columns: unit changes of F; what each does to the stress
+  const Mat9 changes = unit_changes(frame);
+  Mat9 bent;  // what each does to the stress
   Mat3 H = ds;
   H.diagonal() -= s;
   H = l.cwiseInverse().asDiagonal() * H * l.cwiseInverse().asDiagonal();
-  for (int i = 0; i < 3; ++i) axes.col(i) = (U.col(i) * V.col(i).transpose()).reshaped();
-  bent.leftCols<3>() = axes.leftCols<3>() * H;
+  bent.leftCols<3>() = changes.leftCols<3>() * H;
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const Mat3 ij = std::sqrt(0.5) * U.col(i) * V.col(j).transpose();
-    const Mat3 ji = std::sqrt(0.5) * U.col(j) * V.col(i).transpose();
     // (f_i - f_j) / (l_i - l_j), f = s / l
     const double stretching = 0.5 * (slopes[k] * (l[i] + l[j]) - (s[i] + s[j])) / (l[i] * l[j]);
-    axes.col(3 + k) = (ij + ji).reshaped();
-    axes.col(6 + k) = (ij - ji).reshaped();
-    bent.col(3 + k) = stretching * axes.col(3 + k);
-    bent.col(6 + k) = (f[i] + f[j]) / (l[i] + l[j]) * axes.col(6 + k);
+    bent.col(3 + k) = stretching * changes.col(3 + k);
+    bent.col(6 + k) = (f[i] + f[j]) / (l[i] + l[j]) * changes.col(6 + k);
   }
-  w.second.noalias() = bent * axes.transpose();
+  w.second.noalias() = bent * changes.transpose();
   return w;
 }
 

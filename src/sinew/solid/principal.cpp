@@ -38,6 +38,20 @@ Principal principal(const Mat3& F) {
   return {A * stretch.cwiseInverse().asDiagonal(), V, stretch};
 }
 
+Mat9 unit_changes(const Principal& frame) {
+  const auto& [U, V, l] = frame;
+  Mat9 changes;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const Mat3 ij = std::sqrt(0.5) * U.col(i) * V.col(j).transpose();
+    const Mat3 ji = std::sqrt(0.5) * U.col(j) * V.col(i).transpose();
+    changes.col(k) = (U.col(k) * V.col(k).transpose()).reshaped();
+    changes.col(3 + k) = (ij + ji).reshaped();
+    changes.col(6 + k) = (ij - ji).reshaped();
+  }
+  return changes;
+}
+
 Mat9 positive_semidefinite(const Mat9& C) {
   const Eigen::SelfAdjointEigenSolver<Mat9> eigen(C);
   const Mat9& Q = eigen.eigenvectors();
@@ -47,14 +61,12 @@ Mat9 positive_semidefinite(const Mat9& C) {
 Mat9 positive_semidefinite(const Mat9& C, const Mat3& F) {
   const Principal frame = principal(F / F.cwiseAbs().maxCoeff());
   if (!(frame.stretch.minCoeff() > kFlat)) return positive_semidefinite(C);
-  const auto direction = [&](int i, int j) -> Mat3 { return frame.U.col(i) * frame.V.col(j).transpose(); };
+  const Mat9 changes = unit_changes(frame), stress = C.lazyProduct(changes);
   Mat9 root;  // what is positive of C is root root^T
   bool positive = true;
 
-  Eigen::Matrix<double, 9, 3> stretches;
-  for (int i = 0; i < 3; ++i) stretches.col(i) = direction(i, i).reshaped();
-  const Eigen::Matrix<double, 9, 3> changed = C.lazyProduct(stretches);
-  const Mat3 between = stretches.transpose().lazyProduct(changed);
+  const auto stretches = changes.leftCols<3>();
+  const Mat3 between = stretches.transpose().lazyProduct(stress.leftCols<3>());
   if (const Eigen::LLT<Mat3> factor(between); factor.info() == Eigen::Success) {
     root.leftCols<3>() = stretches.lazyProduct(Mat3(factor.matrixL()));
   } else {
@@ -63,15 +75,10 @@ Mat9 positive_semidefinite(const Mat9& C, const Mat3& F) {
     root.leftCols<3>() = stretches.lazyProduct(axes);
     positive = false;
   }
-  int column = 3;
-  for (int k = 0; k < 3; ++k) {
-    const Mat3 ij = direction((k + 1) % 3, (k + 2) % 3), ji = direction((k + 2) % 3, (k + 1) % 3);
-    for (const Mat3& pair : {Mat3(ij + ji), Mat3(ij - ji)}) {
-      const Vec9 unit = std::sqrt(0.5) * pair.reshaped();
-      const double eigenvalue = unit.dot(C.lazyProduct(unit));
-      root.col(column++) = std::sqrt(std::max(0.0, eigenvalue)) * unit;
-      positive = positive && eigenvalue >= 0.0;
-    }
+  for (int k = 3; k < 9; ++k) {
+    const double eigenvalue = changes.col(k).dot(stress.col(k));
+    root.col(k) = std::sqrt(std::max(0.0, eigenvalue)) * changes.col(k);
+    positive = positive && eigenvalue >= 0.0;
   }
   if (positive) return C;
   return root.lazyProduct(root.transpose());

@@ -12,6 +12,9 @@ struct Principal {
   Vec3 stretch;
 };
 Principal principal(const Mat3& F);
+/// Unit changes of F in its frame, as columns: u_i v_i^T of each axis, then (u_i v_j^T + u_j v_i^T) / sqrt 2 of each
+/// pair of axes, then (u_i v_j^T - u_j v_i^T) / sqrt 2.
+Mat9 unit_changes(const Principal& frame);
 
 /// The nearest positive semi-definite matrix: negative eigenvalues of the symmetric C become 0.
 Mat9 positive_semidefinite(const Mat9& C);
