@@ -85,8 +85,8 @@ void print(const Glue& glue, const CouplingFacts& facts) {
 void print(const Slide& slide, const CouplingFacts& facts) {
   fmt::print("rod {} in solid {}: {} of {} points kept\n", slide.rod, slide.solid, facts.kept, facts.asked);
   if (facts.outside > 0) {
-    fmt::print("  {} of them lie outside the mesh, up to {:.3g} mm, and are tied to the nearest element\n",
-               facts.outside, 1e3 * facts.farthest);
+    fmt::print("  {} of {} lie outside the mesh, up to {:.3g} mm, and are tied to the nearest element\n", facts.outside,
+               facts.asked, 1e3 * facts.farthest);
   }
   if (!facts.no_unknown.empty()) fmt::print("  dropped, nothing there can move: s = {}\n", list_mm(facts.no_unknown));
   if (!facts.redundant.empty())

@@ -152,6 +152,18 @@ def test_every_block_of_the_documents_runs(page: str, program: str, tmp_path: Pa
     blocks.run(page, Path(program).resolve(), tmp_path)
 
 
+def test_documents_can_be_followed_in_one_checkout() -> None:
+    """What one page writes is not in the way of another."""
+    pages: dict[str, set[str]] = {}
+    for page, found in [*PAGES.items(), ("scripts/demo", [blocks.Block("sh", [], 1, (ROOT / "scripts" / "demo").read_text())])]:
+        for block in found:
+            if block.language == "sh" and "in" not in {word.split("=")[0] for word in block.words}:
+                for folder in re.findall(r"sinew (?:run|workspace)\b.*? -o (\S+)", block.text):
+                    pages.setdefault(folder, set()).add(page)
+    assert len(pages) > 20
+    assert {folder: found for folder, found in pages.items() if len(found) > 1} == {}
+
+
 def test_few_blocks_are_not_run() -> None:
     left_out = {page: sum("no-run" in block.words for block in found) for page, found in PAGES.items()}
     assert {page: number for page, number in left_out.items() if number} == NOT_RUN

@@ -320,6 +320,35 @@ TEST_F(Picture, rods_alone_are_coloured_by_what_they_moved) {
   EXPECT_GT(image.count(0xfde725, 25, kMiddle), 20);
 }
 
+TEST_F(Picture, a_robot_that_only_rounds_has_one_colour) {
+  const Snapshot rest = beam();
+  const auto yellow = [&](double by) {
+    draw(rest, moved(rest, [&](const Vec3& p) -> Vec3 { return p + Vec3(0, by * p.x(), 0); }));
+    return Image(png_).count(0xfde725, 60, kMiddle);
+  };
+  EXPECT_EQ(yellow(1e-14), 0);
+  EXPECT_GT(yellow(1e-10), 50);
+}
+
+TEST_F(Picture, forces_of_contacts_point_to_where_they_push) {
+  const Snapshot rest = beam();
+  Snapshot end = moved(rest, bent);
+  end.contacts = {{Vec3(0.08, 0.1, 0.02), Vec3(0, 2, 0), Vec3::UnitY()},
+                  {Vec3(0.12, 0.1, 0.02), Vec3(0, -1, 0), Vec3::UnitY()}};
+  draw(rest, end);
+  const Image image(png_);
+  const PictureView view = picture_view(rest, end, {});
+  const auto inked = [&](double x, double forward) {  // from y = 0.1 m on, in pixels
+    const Vec3 place = view.project(Vec3(x, 0.1, 0.02) + Vec3(0, forward / view.scale, 0));
+    return image.count(0x1446a0, 30, {place.x() - 2, place.y() - 2, place.x() + 2, place.y() + 2}) > 0;
+  };
+  EXPECT_TRUE(inked(0.08, 80));
+  EXPECT_FALSE(inked(0.08, -20));
+  EXPECT_TRUE(inked(0.12, -40));  // half as long
+  EXPECT_FALSE(inked(0.12, -60));
+  EXPECT_FALSE(inked(0.12, 20));
+}
+
 TEST_F(Picture, equal_states_give_equal_files) {
   const Snapshot rest = beam(), end = moved(rest, bent);
   const auto bytes = [&] {
@@ -427,6 +456,9 @@ TEST(Readable, has_three_digits_and_a_unit_that_fits) {
   EXPECT_EQ(readable_length(1.5), "1.50 m");
   EXPECT_EQ(readable_length(0.0), "0 mm");
   EXPECT_EQ(readable_length(1e-15), "1e-06 nm");
+  EXPECT_EQ(readable_force(0.35), "350 mN");
+  EXPECT_EQ(readable_force(-1234.0), "-1.23 kN");
+  EXPECT_EQ(readable_force(0.0), "0 N");
   EXPECT_EQ(stress_unit(2.5e5).symbol, "kPa");
   EXPECT_EQ(stress_unit(0).symbol, "kPa");
   EXPECT_EQ(stress_unit(std::nan("")).symbol, "kPa");

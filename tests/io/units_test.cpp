@@ -81,7 +81,7 @@ TEST(Units, WrongDimensionNamesTheExpectedOneAndItsUnits) {
   EXPECT_EQ(fault.value, "12 kPa");
   EXPECT_EQ(fault.rule, "must be a length, but 'kPa' is a unit of a pressure");
   EXPECT_EQ(fault.remedy, "write a plain number in m or a number with one of the units um, mm, cm, m");
-  EXPECT_EQ(fault_of("12 mm", number).remedy, "write a plain number, for example `0.45`");
+  EXPECT_EQ(fault_of("12 mm", number).remedy, "write a plain number, without a unit");
 }
 
 TEST(Units, EveryUnitIsRefusedForEveryOtherDimension) {
@@ -154,6 +154,7 @@ TEST(Nearest, OnlySuggestsWhatIsClose) {
   EXPECT_EQ(nearest("mess", known), "mesh");
   EXPECT_EQ(nearest("dansty", known), "density");
   EXPECT_EQ(nearest("im", known), "in");
+  EXPECT_EQ(nearest("mPa", {"Pa", "kPa", "MPa"}), "MPa");
   EXPECT_EQ(nearest("colour", known), "");
   EXPECT_EQ(nearest("x", known), "");
   EXPECT_EQ(nearest(std::string(100000, 'm'), known), "");

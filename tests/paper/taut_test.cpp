@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sinew/io/mesh_file.hpp"
+#include "sinew/sim/internal.hpp"
 #include "support/robots.hpp"
 
 namespace sinew::test {
@@ -49,6 +50,7 @@ TEST_P(TautCable, NewtonConverges) {
   EI *= converged.tension / tension;  // a stiff cable takes its own part of the pull
   converged = pulled(taut_finger(EI));
   EXPECT_NEAR(converged.tension * kSpan * kSpan / EI, wanted, 0.1 * wanted);
+  EXPECT_NEAR(tautness(build(taut_finger(EI), io::read_mesh), converged.trace.states.back(), 0), wanted, 0.3 * wanted);
   EXPECT_LE(converged.most, 15);
   for (const StepReport& report : converged.trace.reports) {
     EXPECT_EQ(report.status, Status::converged);
@@ -65,6 +67,23 @@ TEST_P(TautCable, NewtonConverges) {
 
 INSTANTIATE_TEST_SUITE_P(TensionOverBending, TautCable, testing::Values(1.0, 40.0, 400.0, 4000.0),
                          [](const auto& one) { return std::to_string(static_cast<int>(one.param)); });
+
+TEST(TautCable, OneLinearisationThatRunsAwayIsRefused) {
+  Scene scene = taut_finger(2e-8);
+  scene.newton.iterations = 1;
+  const Model model = build(scene, io::read_mesh);
+  const Trace trace = run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::stopped);
+  EXPECT_EQ(trace.failure.status, Status::diverged);
+  EXPECT_EQ(trace.failure.detail.substr(0, 10), "rods.cable") << trace.failure.detail;
+  EXPECT_EQ(trace.failure.halvings, kHalvings);
+  for (const State& state : trace.states) {  // what is kept is no nonsense
+    EXPECT_LT((tip(model, state) - tip(model, trace.states[0])).norm(), 80 * mm);
+    EXPECT_LT(std::abs(state.actuators[0]), 20.0);
+  }
+  EXPECT_GT(tautness(model, trace.states.back(), 0), 300.0);
+  EXPECT_EQ(tautness(model, trace.states[0], 0), 0.0);
+}
 
 /// The authors' trunk with 10 N on one cable or on all four: T l^2 / (E I) = 485 from one point to the next. Its own
 /// 450 kPa cannot carry that (one cable curls it up at 2 N, four buckle it below 1 N each), so the body is stiffer.

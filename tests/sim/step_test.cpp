@@ -507,6 +507,19 @@ TEST(Warnings, numbers_that_are_too_large_and_rods_beside_their_solid_are_told) 
   EXPECT_THAT(warnings([](Scene& scene) { scene.rods[0].second.section = Circle{0.04}; }),
               testing::ElementsAre("rods.cable: its radius of 0.04 m is more than half its length of 0.06 m: numbers "
                                    "without a unit are metres"));
+  EXPECT_THAT(
+      warnings([](Scene& scene) { scene.solids[0].second.material.law = solid::corotational(0.25, 0.4); }),
+      testing::ElementsAre("solids.block: Young's modulus is 0.25 Pa, less than that of any gel: numbers without "
+                           "a unit are pascals"));
+  EXPECT_THAT(warnings([](Scene& scene) { scene.rods[0].second.material.young = 5; }),
+              testing::ElementsAre("rods.cable: Young's modulus is 5 Pa, less than that of any gel: numbers without a "
+                                   "unit are pascals"));
+  EXPECT_THAT(warnings([](Scene& scene) { scene.time.step = 10; }),
+              testing::ElementsAre("time.step of 10 s is longer than the run of 0.2 s: numbers without a unit are "
+                                   "seconds"));
+  EXPECT_THAT(warnings([](Scene& scene) { scene.rods[0].second.path[1].x() = 63 * mm; }),
+              testing::ElementsAre("couplings.0.slide: the rod's tip, which is anchored, lies 0.003 m outside "
+                                   "solids.block: should the rod end in the body?"));
   EXPECT_THAT(warnings([](Scene& scene) {
                 for (Vec3& x : scene.rods[0].second.path) x.z() += 4 * mm;
               }),

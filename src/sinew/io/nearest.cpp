@@ -24,6 +24,15 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+namespace {
+
+bool same_but_for_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+}  // namespace
+
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
   constexpr std::size_t longest = 64;  // beyond, it is no misspelling and not worth the time
   std::string best;
@@ -31,7 +40,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
   int fewest = std::max(1, static_cast<int>(word.size()) / 3) + 1;
   for (const std::string& candidate : known) {
     if (candidate.size() > longest) continue;
-    const int edits = edit_distance(word, candidate);
+    const int edits = same_but_for_case(word, candidate) ? 0 : edit_distance(word, candidate);
     if (edits < fewest && edits < static_cast<int>(std::max(word.size(), candidate.size()))) {
       fewest = edits;
       best = candidate;

@@ -10,7 +10,8 @@ namespace sinew::io {
 /// Edits (insert, delete, replace, swap of neighbours) from one word to the other.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The word of `known` that `word` was most likely meant to be; empty if none is close.
+/// The word of `known` that `word` was most likely meant to be, in the first place one of other case; empty if
+/// none is close.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace sinew::io

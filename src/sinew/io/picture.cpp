@@ -64,11 +64,17 @@ void draw_sliding_points(const Page& page, const std::vector<MarkSnapshot>& mark
   for (const Vec2& place : places) page.disc(place, radius, kWhite, std::min(1.6, 0.5 * radius), kInk);
 }
 
+double largest_force(const std::vector<ForceSnapshot>& contacts) {
+  double largest = 0.0;
+  for (const ForceSnapshot& own : contacts)
+    if (drawable(own.position)) largest = std::max(largest, own.force.norm());
+  return largest;
+}
+
 /// Forces as arrows on what they push, the largest as long as a tenth of the page.
 void draw_contacts(const Page& page, const std::vector<ForceSnapshot>& contacts, const PictureView& view) {
   constexpr double kLongest = 90.0;  // [px]
-  double largest = 0.0;
-  for (const ForceSnapshot& own : contacts) largest = std::max(largest, own.force.norm());
+  const double largest = largest_force(contacts);
   if (!(largest > 0.0)) return;
   for (const ForceSnapshot& own : contacts) {
     if (!drawable(own.position)) continue;
@@ -99,7 +105,8 @@ void draw_way(const Page& page, const Vec2& from, const Vec2& to) {
   page.disc(from, 4.5, kWhite, 1.8, rgb(0xd0104c));
 }
 
-void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureView& view) {
+void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureView& view,
+                  double roundoff) {
   struct Label {
     Vec2 place;
     std::string text;
@@ -113,7 +120,6 @@ void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, c
     std::string text = page.fitted(printable(output.name), {.size = 20, .bold = true}, 300);
     if (before != nullptr && drawable(before->position)) {
       const double way = (output.position - before->position).norm();
-      const double roundoff = 1e-12 * std::max(output.position.norm(), before->position.norm());
       text += "  " + readable_length(way > roundoff ? way : 0.0);
       const Vec2 from = view.project(before->position).head<2>();
       draw_way(page, from, place);
@@ -184,7 +190,9 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool 
       draw_output_sign(page, {x + 8, kBase - 6});
     });
   if (!end.contacts.empty())
-    entry("contact force", 38, [&](double x) { page.line({x, kBase - 6}, {x + 30, kBase - 6}, 2.2, kForce); });
+    entry("contact force, up to " + readable_force(largest_force(end.contacts)), 38, [&](double x) {
+      page.line({x, kBase - 6}, {x + 30, kBase - 6}, 2.2, kForce);
+    });
   if (!end.sliding_points.empty())
     entry("sliding point", 18, [&](double x) { page.disc({x + 5, kBase - 6}, 4.5, kWhite, 1.6, kInk); });
   if (std::any_of(end.bodies.begin(), end.bodies.end(), [](const BodySnapshot& body) { return !body.ground; }))
@@ -234,6 +242,13 @@ std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end) {
   return sights;
 }
 
+/// What moves by less than this [m] does not move: positions are computed to some of their last digits.
+double roundoff_of(const std::vector<Sight>& sights) {
+  double farthest = 0.0;
+  for (const Sight& sight : sights) farthest = std::max(farthest, sight.point.lpNorm<Eigen::Infinity>());
+  return 1e-12 * farthest;
+}
+
 /// Part of the page that these take, with room for lines.
 Area area_of(const std::vector<Sight>& sights, const PictureView& view) {
   Area area{kScene.right, kScene.bottom, kScene.left, kScene.top};
@@ -279,6 +294,7 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
   }
   const PictureView view = choose_view(sights, options.up, kScene);
   const Area area = area_of(sights, view);
+  const double roundoff = roundoff_of(sights);
   const bool rods_orange = !end.solids.empty();
 
   std::vector<std::vector<double>> on_solids;
@@ -293,7 +309,7 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
                                   : rod_values(rod, named(rest.rods, rod.name), options.color));
     if (!rods_orange) all.insert(all.end(), on_rods.back().begin(), on_rods.back().end());
   }
-  const Scale scale = scale_of(all, options.color);
+  const Scale scale = scale_of(all, options.color, roundoff);
 
   const Page page(kPictureWidth, kPictureHeight);
   draw_header(page, end, options);
@@ -319,7 +335,7 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
     rods.paint(page.cairo(), {.width = 0.0, .before = &bodies, .hidden = 0.45});
     draw_sliding_points(page, end.sliding_points, view);
     draw_contacts(page, end.contacts, view);
-    draw_outputs(page, rest, end, view);
+    draw_outputs(page, rest, end, view, roundoff);
     if (!options.cloud.empty()) {
       const double largest = draw_cloud(page, options.cloud, view);
       draw_legend(page, kLegend, options.cloud_name, largest, {1.0, options.cloud_unit}, false);

@@ -114,11 +114,11 @@ Eigen::VectorXd rod_values(const RodSnapshot& rod, const RodSnapshot* before, Pi
   return displacement(before->points, rod.points);
 }
 
-Scale scale_of(std::vector<double> values, PictureColor color) {
+Scale scale_of(std::vector<double> values, PictureColor color, double roundoff) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  if (color == PictureColor::displacement) return {values.back(), false};
+  if (color == PictureColor::displacement) return {values.back() > roundoff ? values.back() : 0.0, false};
   const double most = values[(values.size() - 1) * 98 / 100];
   return most > 0.0 && most < values.back() ? Scale{most, true} : Scale{values.back(), false};
 }

@@ -28,8 +28,9 @@ struct Scale {
   double of(double value) const { return largest > 0.0 ? value / largest : 0.0 * value; }
 };
 
-/// Displacements up to their largest; stresses, which peak at corners, up to what two in a hundred exceed.
-Scale scale_of(std::vector<double> values, PictureColor color);
+/// Displacements up to their largest, or none if that is `roundoff` [m] of positions; stresses, which peak at corners,
+/// up to what two in a hundred exceed.
+Scale scale_of(std::vector<double> values, PictureColor color, double roundoff);
 
 /// Adds a solid's surface with its nodes at `nodes`; without `values` in the first colour.
 void add_surface(Raster& raster, const Eigen::Matrix3Xd& nodes, const SolidSnapshot& solid,

@@ -17,6 +17,8 @@ ShownUnit best(double largest, const std::vector<ShownUnit>& units, const ShownU
   return units.back();
 }
 
+std::string with_unit(double value, const ShownUnit& unit) { return readable(value / unit.factor) + " " + unit.symbol; }
+
 }  // namespace
 
 ShownUnit length_unit(double largest) {
@@ -36,9 +38,10 @@ std::string readable(double shown) {
   return fmt::format("{:.{}f}", shown, decimals);
 }
 
-std::string readable_length(double length) {
-  const ShownUnit unit = length_unit(length);
-  return readable(length / unit.factor) + " " + unit.symbol;
+std::string readable_length(double length) { return with_unit(length, length_unit(length)); }
+
+std::string readable_force(double force) {
+  return with_unit(force, best(force, {{1e3, "kN"}, {1.0, "N"}, {1e-3, "mN"}, {1e-6, "µN"}}, {1.0, "N"}));
 }
 
 double round_below(double limit) {

@@ -24,6 +24,9 @@ std::string readable(double shown);
 /// Length [m] in its own best unit: "34.2 mm"; "0 mm" for zero.
 std::string readable_length(double length);
 
+/// The same of a force [N]: "350 mN"; "0 N" for zero.
+std::string readable_force(double force);
+
 /// Largest of 1, 2, 5 times a power of ten that is not above `limit`; 0 if `limit` is not positive and finite.
 double round_below(double limit);
 

@@ -101,7 +101,7 @@ std::string single_blanks(std::string_view text) {
 }
 
 std::string how_to_write(Dimension dimension) {
-  if (dimension == number) return "write a plain number, for example `0.45`";
+  if (dimension == number) return "write a plain number, without a unit";
   return fmt::format("write a plain number in {} or a number with one of the units {}", si_unit(dimension),
                      fmt::join(units(dimension), ", "));
 }

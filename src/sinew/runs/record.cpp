@@ -7,6 +7,7 @@
 
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/csv_table.hpp"
+#include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 
@@ -50,6 +51,21 @@ void add_warnings(const Model& model, const State& state, std::vector<std::strin
       warnings.push_back(fmt::format("rods.{}: the geometric cable pushes with {:.3g} N; a real one would go slack",
                                      cable.name, -tension));
     }
+  }
+}
+
+/// Rods so taut that this may be why a run stopped: beyond where steps are shown to go (tests/paper/taut_test.cpp).
+void warn_of_taut_rods(const Model& model, const State& state, std::vector<std::string>& warnings) {
+  const bool once = model.scene.newton.iterations > 0;
+  const double shown = once ? 300.0 : 4000.0;
+  for (std::size_t n = 0; n < model.rods.size(); ++n) {
+    const double taut = tautness(model, state, static_cast<int>(n));
+    if (!(taut > shown)) continue;
+    warnings.push_back(fmt::format(
+        "rods.{}: its tension outweighs its bending stiffness, T l^2 / (E I) = {:.2g} of a section of length l; {} may "
+        "fail above {}. Give it fewer sections, at most one from point to point{}, or make it a `cable: geometric`",
+        model.rods[n].name, taut, once ? "steps that are linearised (`newton: n`)" : "steps", shown,
+        once ? ", leave `newton` out" : ""));
   }
 }
 
@@ -132,6 +148,7 @@ void add(const Model& model, const State& state, const StepReport& report, RunSu
 void conclude(const Model& model, const State& last, RunEnd end, RunSummary& summary) {
   summary.end = end_word(end);
   add_warnings(model, last, summary.warnings);
+  if (end == RunEnd::stopped) warn_of_taut_rods(model, last, summary.warnings);
   if (summary.unstable) {
     summary.warnings.push_back(
         "the last equilibrium is unstable, a real body would have buckled; a small side load or shorter steps show "

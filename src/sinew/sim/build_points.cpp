@@ -252,6 +252,10 @@ void build_coupling(Model& model, int number, const Slide& slide) {
     model.warnings.push_back(path + ": " + std::to_string(facts.outside) + " of " + std::to_string(facts.asked) +
                              " points lie outside solids." + slide.solid + ", up to " + text(facts.farthest) +
                              " m, and are tied to the nearest elements: is the rod where it should be?");
+  else if (const PointModel& tip = candidates.back();
+           tip.fixed && tip.where.distance > 0.02 * model.solids[solid].mesh.diagonal)
+    model.warnings.push_back(path + ": the rod's tip, which is anchored, lies " + text(tip.where.distance) +
+                             " m outside solids." + slide.solid + ": should the rod end in the body?");
   if (slide.anchor_tip == AnchorTip::pose)
     tie_axes(model, number, line.rod, candidates.back().abscissa, solid, asked.positions.back(),
              candidates.back().where, {}, {0, 1, 2});

@@ -41,6 +41,18 @@ rod::Vec6 internal_wrench(const Model& model, const State& state, int number, do
   return wrench;
 }
 
+double tautness(const Model& model, const State& state, int number) {
+  const rod::Rod& rod = model.rods[number].rod;
+  double most = 0.0;
+  for (const rod::Section& section : rod.sections) {
+    const double s = 0.5 * (section.begin + section.end), l = section.length();
+    const Eigen::Matrix<double, 6, 6> stiffness = rod::stiffness_at(rod.profile, s);
+    const double tension = internal_wrench(model, state, number, s)[3];
+    most = std::max(most, tension * l * l / std::min(stiffness(1, 1), stiffness(2, 2)));
+  }
+  return most;
+}
+
 rod::SectionStress section_stress(const Model& model, const State& state, int number, double s) {
   return rod::stress_at(model.rods[number].rod.profile, s, internal_wrench(model, state, number, s));
 }

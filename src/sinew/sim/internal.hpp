@@ -16,6 +16,10 @@ void write_internal(const std::vector<rod::Balance>& along, RodState& state);
 /// is concentrated, its side towards the tip; at the tip itself, the base's.
 rod::Vec6 internal_wrench(const Model& model, const State& state, int number, double s);
 
+/// By how much the tension of a rod outweighs its bending stiffness: T l^2 / (E I) of the section of length l where
+/// that is largest, E I the smaller one at its middle; 0 under pressure.
+double tautness(const Model& model, const State& state, int number);
+
 /// The largest stresses of the cross-section at s.
 rod::SectionStress section_stress(const Model& model, const State& state, int number, double s);
 

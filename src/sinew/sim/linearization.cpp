@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "sinew/linalg/finite.hpp"
@@ -284,13 +285,42 @@ void advance_by(const StepContext& context, const Increment& increment, double f
   advance_reduced(context, increment.reduced, fraction, iterate);
 }
 
-double trusted_fraction(const StepContext& context, const Increment& increment) {
-  double fraction = 1.0, farthest = 0.0;
+namespace {
+
+constexpr double kTrustedTurn = 0.8;   ///< [rad]
+constexpr double kTrustedShare = 0.3;  ///< of the scene's size
+
+double farthest_move(const Increment& increment) {
+  double farthest = 0.0;
   for (const Eigen::Matrix3Xd& dx : increment.dx) farthest = std::max(farthest, dx.cwiseAbs().maxCoeff());
-  const double turn = largest_turn(context, increment.reduced);
-  if (turn > 0.8) fraction = 0.8 / turn;
-  if (farthest > 0.3 * context.model.size) fraction = std::min(fraction, 0.3 * context.model.size / farthest);
+  return farthest;
+}
+
+}  // namespace
+
+double trusted_fraction(const StepContext& context, const Increment& increment) {
+  const double turn = largest_turn(context, increment.reduced).angle, farthest = farthest_move(increment);
+  const double trusted = kTrustedShare * context.model.size;
+  double fraction = 1.0;
+  if (turn > kTrustedTurn) fraction = kTrustedTurn / turn;
+  if (farthest > trusted) fraction = std::min(fraction, trusted / farthest);
   return fraction;
+}
+
+std::string beyond_trust(const StepContext& context, const Increment& increment) {
+  constexpr double kTooFar = 3.0;
+  const Turn turn = largest_turn(context, increment.reduced);
+  const double farthest = farthest_move(increment);
+  char text[60];
+  if (turn.angle > kTooFar * kTrustedTurn) {
+    std::snprintf(text, sizeof text, ", turned by %.3g rad in one linearisation", turn.angle);
+    return std::string(turn.kind) + "." + *turn.name + text;
+  }
+  if (farthest > kTooFar * kTrustedShare * context.model.size) {
+    std::snprintf(text, sizeof text, "solids, moved by %.3g m in one linearisation", farthest);
+    return text;
+  }
+  return {};
 }
 
 }  // namespace sinew

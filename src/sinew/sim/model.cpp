@@ -154,6 +154,13 @@ void warn_of_locking(Model& model, const SolidModel& solid) {
   }
 }
 
+/// The softest gels have some 100 Pa.
+void warn_of_softness(double young, const std::string& path, std::vector<std::string>& warnings) {
+  if (young < 50.0)
+    warnings.push_back(path + ": Young's modulus is " + text(young) +
+                       " Pa, less than that of any gel: numbers without a unit are pascals");
+}
+
 /// Where the file has elements that are not used, the body has holes.
 void warn_of_holes(Model& model, const SolidModel& solid) {
   std::string found;
@@ -225,7 +232,10 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   const double steps = scene.time.duration / scene.time.step;
   const bool grid = scene.analysis == Analysis::dynamic || scene.analysis == Analysis::quasi_static;
-  if (grid && std::abs(steps - std::round(steps)) > 1e-6) {
+  if (grid && steps > 0.0 && steps < 1.0 - 1e-6) {
+    model.warnings.push_back("time.step of " + text(scene.time.step) + " s is longer than the run of " +
+                             text(scene.time.duration) + " s: numbers without a unit are seconds");
+  } else if (grid && std::abs(steps - std::round(steps)) > 1e-6) {
     model.warnings.push_back("time.duration is no whole number of steps; the run goes on to the next one, " +
                              text(std::ceil(steps) * scene.time.step) + " s");
   }
@@ -240,6 +250,8 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     model.solids.push_back(build_solid(scene, name, solid, read_mesh, model.warnings));
     warn_of_locking(model, model.solids.back());
     warn_of_holes(model, model.solids.back());
+    for (const solid::Material& material : model.solids.back().body.materials)
+      warn_of_softness(solid::young(solid::lame(material.law)), "solids." + name, model.warnings);
   }
   for (const auto& [name, rod] : scene.rods) {
     if (rod.cable == Cable::geometric) {
@@ -250,6 +262,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
       if (built.path_deviation > 0.01 * built.rod.length())
         model.warnings.push_back("rods." + name + ": it starts " + text(built.path_deviation) +
                                  " m off its path, which its sections and strains cannot follow");
+      if (rod.material.young > 0.0) warn_of_softness(rod.material.young, "rods." + name, model.warnings);
       const double radius = rod::radius_at(built.rod.profile, 0.0);
       if (radius > 0.5 * built.rod.length())
         model.warnings.push_back("rods." + name + ": its radius of " + text(radius) +

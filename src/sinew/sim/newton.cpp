@@ -187,6 +187,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       iterate.t += dt;
       continue;
     }
+    if (rules.fixed) {
+      if (std::string lost = beyond_trust(context, increment); !lost.empty()) return fail(Status::diverged, lost);
+    }
     const double fraction = rules.fixed ? 1.0 : trusted_fraction(context, increment);
     if (descent) memory.search.take(iterate.state, increment, fraction, here);
     advance_by(context, increment, fraction, iterate.state);

@@ -47,7 +47,14 @@ void clear(const Model& model, solve::RightSide& side);
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate);
 
-/// Largest rotation [rad] of a rod's section or base that a solution asks for.
-double largest_turn(const StepContext& context, const solve::CoupledSolution& solution);
+/// A rotation [rad], and whose: "rods" or "bodies", and its name.
+struct Turn {
+  double angle = 0.0;
+  const char* kind = "";
+  const std::string* name = nullptr;
+};
+
+/// The largest rotation of a rigid body or of a rod's section or base that a solution asks for.
+Turn largest_turn(const StepContext& context, const solve::CoupledSolution& solution);
 
 }  // namespace sinew

@@ -11,7 +11,7 @@ enum class Status {
   linearized,      ///< the asked number of linearisations was made (newton: n)
   max_iterations,  ///< Newton did not meet its tolerance within the limit
   singular,        ///< a matrix could not be factored
-  diverged,        ///< numbers grew beyond what can be represented
+  diverged,        ///< numbers grew without bound, or a linearisation beyond trust
   inverted,        ///< an element turned inside out, where its law ends
   path_lost,       ///< statics: the path of equilibria does not lead to the full load
   rod_exhausted,   ///< the base end of a rod was pushed in past a sliding point

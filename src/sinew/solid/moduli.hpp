@@ -28,6 +28,9 @@ constexpr double bulk_modulus(double shear, const Compressibility& given) {
   return 2.0 * shear * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
 }
 
+constexpr double young(const Lame& moduli) {
+  return moduli.mu * (3.0 * moduli.lambda + 2.0 * moduli.mu) / (moduli.lambda + moduli.mu);
+}
 constexpr double bulk_modulus(const Lame& moduli) { return moduli.lambda + 2.0 / 3.0 * moduli.mu; }
 constexpr Lame lame_from_bulk(double shear, double bulk) { return {shear, bulk - 2.0 / 3.0 * shear}; }
 
