@@ -10,6 +10,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "sinew/io/append_file.hpp"
 #include "sinew/io/color_map.hpp"
@@ -327,7 +328,7 @@ TEST_F(Picture, a_robot_that_only_rounds_has_one_colour) {
     return Image(png_).count(0xfde725, 60, kMiddle);
   };
   EXPECT_EQ(yellow(1e-14), 0);
-  EXPECT_GT(yellow(1e-10), 50);
+  EXPECT_GT(yellow(1e-8), 50);
 }
 
 TEST_F(Picture, forces_of_contacts_point_to_where_they_push) {
@@ -347,6 +348,38 @@ TEST_F(Picture, forces_of_contacts_point_to_where_they_push) {
   EXPECT_TRUE(inked(0.12, -40));  // half as long
   EXPECT_FALSE(inked(0.12, -60));
   EXPECT_FALSE(inked(0.12, 20));
+}
+
+TEST_F(Picture, outputs_leave_their_ways_and_targets_stand_where_they_are) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Snapshot rest = beam(), end = moved(rest, bent);
+  Course course{"tip", Eigen::Matrix3Xd(3, 50), Eigen::Matrix3Xd(3, 3), 0.03};
+  const Vec3 from = rest.outputs[0].position, to = end.outputs[0].position;
+  for (int i = 0; i < 50; ++i) {  // half a circle from one to the other
+    const double angle = std::numbers::pi * i / 49;
+    const Vec3 across = Vec3::UnitX() * 0.5 * (to - from).norm();
+    course.way.col(i) = 0.5 * (from + to) - 0.5 * std::cos(angle) * (to - from) + std::sin(angle) * across;
+  }
+  course.way.col(40).setConstant(nan);
+  course.wanted << Vec3::Constant(nan), to + Vec3(0.08, 0, 0), to + Vec3(0.08, 0.03, 0);
+  PictureOptions options;
+  options.courses = {course};
+  options.outcome = "limited by a motor";
+  draw(rest, end, options);
+  const Image image(png_);
+  const PictureView view = picture_view(rest, end, options);
+  const auto inked = [&](const Vec3& place, std::uint32_t color, double forward = 0.0) {
+    const Vec3 at = view.project(place) + Vec3(forward, 0, 0);
+    return image.count(color, 80, {at.x() - 2, at.y() - 2, at.x() + 2, at.y() + 2}) > 0;
+  };
+  EXPECT_TRUE(inked(course.way.col(25), kMarkColor));
+  EXPECT_TRUE(inked(course.way.col(10), kMarkColor));
+  const Vec3 goal = course.wanted.col(2);
+  EXPECT_TRUE(inked(goal, 0x222222, 12));  // its ring
+  EXPECT_TRUE(inked(goal, 0x222222, -12));
+  EXPECT_FALSE(inked(goal, 0x222222, 6));
+  EXPECT_TRUE(inked(0.5 * (goal + course.wanted.col(1)), 0x222222));  // its way
+  EXPECT_GT(image.count(0x6b6b6b, 60, {400, 90, 500, 110}), 0);       // the outcome, behind the status
 }
 
 TEST_F(Picture, equal_states_give_equal_files) {

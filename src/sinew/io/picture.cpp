@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "sinew/io/picture_page.hpp"
@@ -20,7 +21,7 @@ using Vec3 = Eigen::Vector3d;
 
 constexpr Area kScene{80, 155, 1340, 825};   ///< robots are fitted into this
 constexpr Area kLabels{40, 118, 1380, 862};  ///< names stay in this
-constexpr Rgb kForce = rgb(0x1446a0);
+constexpr Rgb kForce = rgb(0x1446a0), kOutput = rgb(0xd0104c), kTarget = kInk;
 constexpr Area kLegend{1436, 230, 1464, 760};  ///< the bar
 
 template <class Object>
@@ -92,43 +93,93 @@ void draw_contacts(const Page& page, const std::vector<ForceSnapshot>& contacts,
 
 void draw_output_sign(const Page& page, const Vec2& place) {
   page.disc(place, 8.0, kWhite, 2.4, kInk);
-  page.disc(place, 3.6, rgb(0xd0104c));
+  page.disc(place, 3.6, kOutput);
 }
 
-/// The way of an output from its old place, dashed.
-void draw_way(const Page& page, const Vec2& from, const Vec2& to) {
-  if ((to - from).norm() < 14.0) return;
-  const double dashes[] = {1, 7};
-  cairo_set_dash(page.cairo(), dashes, 2, 0);
-  page.line(from, to, 3.0, rgb(0xd0104c));
-  cairo_set_dash(page.cairo(), nullptr, 0, 0);
-  page.disc(from, 4.5, kWhite, 1.8, rgb(0xd0104c));
+void draw_target_sign(const Page& page, const Vec2& place) {
+  constexpr double kRing = 12.0, kTick = 18.0;
+  cairo_new_path(page.cairo());
+  page.color(kTarget);
+  cairo_set_line_width(page.cairo(), 2.4);
+  cairo_arc(page.cairo(), place.x(), place.y(), kRing, 0.0, 2.0 * std::numbers::pi);
+  cairo_stroke(page.cairo());
+  for (const Vec2& way : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)})
+    page.line(place + kRing * way, place + kTick * way, 2.4, kTarget);
 }
 
-void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureView& view,
-                  double roundoff) {
+void draw_line(const Page& page, const Eigen::Matrix3Xd& points, const PictureView& view, double width,
+               const Rgb& color) {
+  cairo_new_path(page.cairo());
+  page.color(color);
+  cairo_set_line_width(page.cairo(), width);
+  bool started = false;
+  Vec2 last;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!drawable(points.col(i))) continue;
+    const Vec2 place = view.project(points.col(i)).head<2>();
+    if (started && (place - last).norm() < 1.0) continue;  // (runs have many steps)
+    started ? cairo_line_to(page.cairo(), place.x(), place.y()) : cairo_move_to(page.cairo(), place.x(), place.y());
+    started = true;
+    last = place;
+  }
+  cairo_stroke(page.cairo());
+}
+
+/// The way of an output from its old place: as it was, or dotted from end to end.
+void draw_way(const Page& page, const Vec2& from, const Vec2& to, const Course* course, const PictureView& view) {
+  const bool far = (to - from).norm() >= 14.0;
+  if (course != nullptr && course->way.cols() > 2) {
+    draw_line(page, course->way, view, 2.4, kOutput);
+  } else if (far) {
+    const double dashes[] = {1, 7};
+    cairo_set_dash(page.cairo(), dashes, 2, 0);
+    page.line(from, to, 3.0, kOutput);
+    cairo_set_dash(page.cairo(), nullptr, 0, 0);
+  }
+  if (far) page.disc(from, 4.5, kWhite, 1.8, kOutput);
+}
+
+const Course* course_of(const PictureOptions& options, const std::string& output) {
+  for (const Course& own : options.courses)
+    if (own.output == output) return &own;
+  return nullptr;
+}
+
+void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureOptions& options,
+                  const PictureView& view, double roundoff) {
   struct Label {
     Vec2 place;
     std::string text;
   };
   std::vector<Label> labels;
   std::vector<Area> taken;
+  std::vector<Vec2> targets;
   for (const MarkSnapshot& output : end.outputs) {
     if (!drawable(output.position)) continue;
     const Vec2 place = view.project(output.position).head<2>();
     const MarkSnapshot* before = named(rest.outputs, output.name);
+    const Course* course = course_of(options, output.name);
+    const bool aims = course != nullptr && course->wanted.cols() > 0;
+    if (aims) draw_line(page, course->wanted, view, 1.8, kTarget);
     std::string text = page.fitted(printable(output.name), {.size = 20, .bold = true}, 300);
     if (before != nullptr && drawable(before->position)) {
       const double way = (output.position - before->position).norm();
       text += "  " + readable_length(way > roundoff ? way : 0.0);
       const Vec2 from = view.project(before->position).head<2>();
-      draw_way(page, from, place);
+      draw_way(page, from, place, course, view);
       taken.push_back({from.x() - 6, from.y() - 6, from.x() + 6, from.y() + 6});
+    }
+    if (aims && drawable(course->wanted.rightCols<1>())) {
+      text += ", " + readable_length(course->off > roundoff ? course->off : 0.0) + " off";
+      const Vec2 goal = view.project(course->wanted.rightCols<1>()).head<2>();
+      targets.push_back(goal);
+      taken.push_back({goal.x() - 18, goal.y() - 18, goal.x() + 18, goal.y() + 18});
     }
     taken.push_back({place.x() - 11, place.y() - 11, place.x() + 11, place.y() + 11});
     labels.push_back({place, text});
   }
   for (const Label& label : labels) draw_output_sign(page, label.place);
+  for (const Vec2& target : targets) draw_target_sign(page, target);
   for (const Label& label : labels) {
     const TextStyle style{.size = 20, .bold = true};
     const Vec2 size(page.text_width(label.text, style) + 20, 34);
@@ -163,11 +214,13 @@ void draw_header(const Page& page, const Snapshot& end, const PictureOptions& op
   const bool good = accepted(end.status);
   page.disc({x + 6, 97}, 6, good ? rgb(0x1b8a5a) : kWarning);
   const TextStyle style{.size = 20, .color = good ? kGrey : kWarning, .bold = !good};
-  page.text(x + 22, 104, page.fitted(status, style, 1000), style);
+  if (!options.outcome.empty()) status += "; targets: " + printable(options.outcome);
+  page.text(x + 22, 104, page.fitted(status, style, 1480 - x), style);
 }
 
 /// What the signs mean, from right to left along the foot.
-void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool rods_orange) {
+void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureOptions& options,
+              bool rods_orange) {
   const TextStyle style{.size = 18, .color = kInk, .bold = false, .align = 1.0};
   double right = 1540;
   constexpr double kBase = 936;
@@ -185,8 +238,11 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool 
     cairo_set_line_width(page.cairo(), 1.5);
     cairo_stroke(page.cairo());
   };
+  const auto aims = [](const Course& own) { return own.wanted.cols() > 0; };
+  if (std::any_of(options.courses.begin(), options.courses.end(), aims))
+    entry("target and its way", 48, [&](double x) { draw_target_sign(page, {x + 18, kBase - 6}); });
   if (!end.outputs.empty())
-    entry(rest.outputs.empty() ? "output" : "output and its travel", 24, [&](double x) {
+    entry(rest.outputs.empty() ? "output" : "output and its way", 24, [&](double x) {
       draw_output_sign(page, {x + 8, kBase - 6});
     });
   if (!end.contacts.empty())
@@ -212,7 +268,7 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, bool 
 }
 
 /// Everything that must be seen.
-std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end) {
+std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end, const PictureOptions& options) {
   std::vector<Sight> sights;
   for (const SolidSnapshot& solid : end.solids) {
     for (const Eigen::Matrix3Xd* nodes : {&solid.rest, &solid.nodes}) {
@@ -238,15 +294,19 @@ std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end) {
     for (const auto* marks : {&snapshot->outputs, &snapshot->sliding_points})
       for (const MarkSnapshot& mark : *marks) sights.push_back({mark.position, 0.0});
   }
+  for (const CloudPoint& own : options.cloud) sights.push_back({own.at, 0.0});
+  for (const Course& own : options.courses)
+    for (const Eigen::Matrix3Xd* points : {&own.way, &own.wanted})
+      for (const auto& point : points->colwise()) sights.push_back({point, 0.0});
   std::erase_if(sights, [](const Sight& sight) { return !drawable(sight.point); });
   return sights;
 }
 
-/// What moves by less than this [m] does not move: positions are computed to some of their last digits.
+/// What moves by less than this [m], an atom of a robot of one metre, does not move.
 double roundoff_of(const std::vector<Sight>& sights) {
   double farthest = 0.0;
   for (const Sight& sight : sights) farthest = std::max(farthest, sight.point.lpNorm<Eigen::Infinity>());
-  return 1e-12 * farthest;
+  return 1e-10 * farthest;
 }
 
 /// Part of the page that these take, with room for lines.
@@ -283,15 +343,12 @@ double draw_cloud(const Page& page, const std::vector<CloudPoint>& cloud, const 
 }  // namespace
 
 PictureView picture_view(const Snapshot& rest, const Snapshot& end, const PictureOptions& options) {
-  return choose_view(sights_of(rest, end), options.up, kScene);
+  return choose_view(sights_of(rest, end, options), options.up, kScene);
 }
 
 void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const Snapshot& end,
                   const PictureOptions& options) {
-  std::vector<Sight> sights = sights_of(rest, end);
-  for (const CloudPoint& own : options.cloud) {
-    if (drawable(own.at)) sights.push_back({own.at, 0.0});
-  }
+  const std::vector<Sight> sights = sights_of(rest, end, options);
   const PictureView view = choose_view(sights, options.up, kScene);
   const Area area = area_of(sights, view);
   const double roundoff = roundoff_of(sights);
@@ -335,7 +392,7 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
     rods.paint(page.cairo(), {.width = 0.0, .before = &bodies, .hidden = 0.45});
     draw_sliding_points(page, end.sliding_points, view);
     draw_contacts(page, end.contacts, view);
-    draw_outputs(page, rest, end, view, roundoff);
+    draw_outputs(page, rest, end, options, view, roundoff);
     if (!options.cloud.empty()) {
       const double largest = draw_cloud(page, options.cloud, view);
       draw_legend(page, kLegend, options.cloud_name, largest, {1.0, options.cloud_unit}, false);
@@ -343,7 +400,7 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
     draw_triad(page, view, {120, 905});
     draw_scale_bar(page, view, 230, 940);
   }
-  draw_key(page, rest, end, rods_orange);
+  draw_key(page, rest, end, options, rods_orange);
   if (!all.empty() && options.cloud.empty()) {
     const bool stress = options.color == PictureColor::von_mises;
     draw_legend(page, kLegend, stress ? "von Mises" : "displacement", scale.largest,

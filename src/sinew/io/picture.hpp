@@ -18,8 +18,18 @@ struct CloudPoint {
   double value = 0.0;
 };
 
+/// Where an output was over a run, and where it was to be.
+struct Course {
+  std::string output;
+  Eigen::Matrix3Xd way;     ///< [m]
+  Eigen::Matrix3Xd wanted;  ///< [m] the last is the target; empty without one
+  double off = 0.0;         ///< [m] how far the output is off its target, in what counts
+};
+
 struct PictureOptions {
   std::string title;
+  std::string outcome = {};          ///< behind the status: what came of the targets
+  std::vector<Course> courses = {};  ///< of outputs that are more than their ends
   /// Drawn over the picture, with a legend of their own in place of that of displacements.
   std::vector<CloudPoint> cloud = {};
   std::string cloud_name = {}, cloud_unit = {};
@@ -35,8 +45,9 @@ PictureView picture_view(const Snapshot& rest, const Snapshot& end, const Pictur
 /// Draws `end` as a PNG: solids coloured and half transparent, so that the rods in them show; the shape they had in
 /// `rest` (the state at t = 0) as a pale silhouette; rods at their thickness (two pixels at least), orange, or coloured
 /// if there is no solid; sliding points as dots; forces of contacts as arrows; outputs with their names, their ways and
-/// how far they have come; axes, a scale bar and a legend in readable units. Objects of the two states belong together
-/// by name. What is not finite is left out; no number makes it fail. WriteError if the file cannot be written.
+/// how far they have come, or are off their targets; axes, a scale bar and a legend in readable units. Objects of the
+/// two states belong together by name. What is not finite is left out; no number makes it fail. WriteError if the file
+/// cannot be written.
 void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const Snapshot& end,
                   const PictureOptions& options = {});
 

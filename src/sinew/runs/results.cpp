@@ -16,6 +16,7 @@
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
 
 namespace sinew::runs {
@@ -182,6 +183,41 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
   std::ofstream(path) << report.dump(1) << "\n";
 }
 
+/// A point that stands in three columns of the signals, by its name; nothing if there are none.
+Eigen::Matrix3Xd points_of(const io::Recording& recording, const std::string& name) {
+  const std::vector<std::string>& names = recording.header.signal_names;
+  const auto found = std::find(names.begin(), names.end(), name + ".x");
+  if (found == names.end()) return {};
+  const auto first = static_cast<std::size_t>(found - names.begin());
+  Eigen::Matrix3Xd points(3, std::ssize(recording.steps));
+  for (std::size_t i = 0; i < recording.steps.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::Vector3d>(&recording.steps[i].signals[first]);
+  return points;
+}
+
+/// Of outputs of position. Where a target does not care, it is where its output is.
+std::vector<io::Course> courses(const Model& model, const io::Recording& recording) {
+  std::vector<io::Course> found;
+  if (model.scene.analysis == Analysis::modal) return found;  // (modes do not follow each other)
+  for (const OutputModel& output : model.outputs) {
+    if (output.quantity == Quantity::position)
+      found.push_back({output.name, points_of(recording, output.name), {}, 0.0});
+  }
+  const State last = unpack(model, recording.steps.back().state);
+  Eigen::VectorXd errors;
+  effector_errors(model, last, goal_at(model, last.time), errors);
+  for (const EffectorModel& own : model.effectors) {
+    const std::string& name = model.outputs[own.output].name;
+    const auto course = std::find_if(found.begin(), found.end(), [&](const auto& one) { return one.output == name; });
+    if (course == found.end()) continue;
+    course->wanted = points_of(recording, name + ".target");
+    course->off = error_of(own, errors);
+    for (int i = 0; i < 3 && course->wanted.cols() > 0; ++i)
+      if (own.weights[i] == 0.0) course->wanted.row(i) = course->way.row(i);
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<std::string> write_views(const std::filesystem::path& folder, const LoadedScene& loaded,
@@ -218,6 +254,8 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
     options.title = model.scene.title.empty() ? std::filesystem::path(recording.header.scene_name).stem().string()
                                               : model.scene.title;
     options.up = -model.scene.gravity;
+    options.courses = courses(model, recording);
+    options.outcome = recording.steps.back().targets;
     const io::RecordedStep &first = recording.steps.front(), &last = recording.steps.back();
     const std::string status = summary.end == "done" ? last.status
                                : summary.end == "numerical_stop"
