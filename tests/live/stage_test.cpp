@@ -377,6 +377,22 @@ TEST(Replay, StepsOfAnotherModelAreTold) {
   audience.wait_for([](const Taken& own) { return own.head["frame"] == 5 && own.head["trouble"] == ""; });
 }
 
+TEST(Replay, RunsThatEndedEarlySaySo) {
+  const runs::LoadedScene loaded = scene_of("finger", {"time.duration=0.05 s"});
+  const auto trouble = [&](std::size_t left_out) {
+    io::Recording recording = recording_of(loaded);
+    recording.steps.resize(recording.steps.size() - left_out);
+    Replay replay(loaded.model, std::move(recording), nullptr);
+    std::vector<std::string> told;
+    for (long i = 0; i < replay.frames(); ++i) told.push_back(Taken(replay.frame(i, {})).head["trouble"]);
+    return told;
+  };
+  EXPECT_THAT(trouble(0), testing::Each(""));
+  std::vector<std::string> expected(5);
+  expected.back() = "The run ended here, before its time: report.json says why.";
+  EXPECT_EQ(trouble(1), expected);
+}
+
 TEST(Replay, AsAFileItIsAllThere) {
   const runs::LoadedScene loaded = scene_of("finger", {"time.duration=0.2 s"});
   Replay replay(loaded.model, recording_of(loaded), nullptr);

@@ -42,6 +42,17 @@ export function spoken(name: string): string {
   return own[name] ?? name.replaceAll("_", " ");
 }
 
+/** A value in SI as it is shown: what is nothing but rounding is 0. */
+export function withoutRounding(value: number): number {
+  return Math.abs(value) < 1e-10 ? 0 : value;
+}
+
+/** A number beside an axis, in a few characters. */
+export function tickText(value: number): string {
+  const text = String(Number(value.toPrecision(6)));
+  return text.length <= 7 ? text : value.toExponential(1).replace("e+", "e");
+}
+
 /** A number with its unit, as people write it: 0.0123 m is 12.3 mm. */
 export function quantity(value: number, unit: string): string {
   const shown: Record<string, [string, number]> = { m: ["mm", 1e3], rad: ["deg", 180 / Math.PI], "1": ["", 1] };
@@ -52,7 +63,7 @@ export function quantity(value: number, unit: string): string {
     else if (size >= 1e3) [name, factor] = ["kPa", 1e-3];
   }
   const own = value * factor;
-  const text = Math.abs(value) < 1e-10 ? "0" : Math.abs(own) < 1e-3 || Math.abs(own) >= 1e5 ? own.toExponential(2) : own.toPrecision(4);
+  const text = withoutRounding(value) === 0 ? "0" : Math.abs(own) < 1e-3 || Math.abs(own) >= 1e5 ? own.toExponential(2) : own.toPrecision(4);
   return name ? `${text} ${name}` : text;
 }
 

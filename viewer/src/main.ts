@@ -159,6 +159,7 @@ function tick(): void {
 
 function showStatus(): void {
   const { head } = latest!;
+  const live = scene!.head.mode === "live";
   const parts: [string, string][] = [[head.when, "time"]];
   if (head.realtime !== undefined && head.playing) parts.push([`${head.realtime.toFixed(2)}× real time`, "realtime"]);
   if (head.step_ms !== undefined) parts.push([`step ${head.step_ms.toFixed(2)} ms`, "step"]);
@@ -168,7 +169,7 @@ function showStatus(): void {
   if (head.halvings) parts.push([`step halved ${head.halvings}×`, "warning"]);
   if (head.targets.startsWith("reached")) parts.push([head.targets, "fine"]);
   else if (head.targets) parts.push([`${farOff()}${head.targets.replaceAll("actuators.", "")}`, "warning"]);
-  if (!touched && scene!.head.mode === "live" && head.playing) {
+  if (!touched && live && head.playing) {
     const what = [...(scene!.head.targets.some((own) => own.position) ? ["the red ball"] : []), ...(scene!.head.solids.length > 0 ? ["the body"] : [])];
     if (what.length > 0) parts.push([`Drag ${what.join(", or ")}`, "hint"]);
   }
@@ -177,7 +178,7 @@ function showStatus(): void {
   }
   if (refusal) parts.push([refusal, "warning"]);
   status.replaceChildren(...parts.map(([text, name]) => make("span", { class: name, text })));
-  const stopped = head.trouble ? `Stopped: ${head.trouble} Play tries again, Reset begins anew.` : "";
+  const stopped = !head.trouble ? "" : live ? `Stopped: ${head.trouble} Play tries again, Reset begins anew.` : head.trouble;
   trouble.hidden = !stopped;
   if (trouble.textContent !== stopped) trouble.textContent = stopped;
 }

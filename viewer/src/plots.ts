@@ -2,7 +2,7 @@
 
 import uPlot from "uplot";
 
-import { palette, shownUnit } from "./colors";
+import { palette, shownUnit, tickText, withoutRounding } from "./colors";
 import { download, make } from "./dom";
 import type { FrameMessage, SceneMessage } from "./message";
 
@@ -113,7 +113,7 @@ export class Plots {
         legend: { live: true },
         cursor: { drag: { x: false, y: false } },
         scales: { x: { time: false } },
-        axes: [{ ...axis, size: 28 }, { ...axis, values: (_: uPlot, ticks: number[]) => ticks.map((own) => String(Number(own.toPrecision(6)))) }],
+        axes: [{ ...axis, size: 28 }, { ...axis, values: (_: uPlot, ticks: number[]) => ticks.map(tickText) }],
         series: [
           { label: "t [s]" },
           ...group.signals.map((i, k) => ({
@@ -131,7 +131,7 @@ export class Plots {
 
   private dataOf(group: Group): uPlot.AlignedData {
     const factor = shownUnit(group.unit)[1];
-    return [this.time, ...group.signals.map((i) => this.values[i]!.map((value) => (Number.isNaN(value) ? null : factor * value)))];
+    return [this.time, ...group.signals.map((i) => this.values[i]!.map((value) => (Number.isNaN(value) ? null : factor * withoutRounding(value))))];
   }
 
   add(frame: FrameMessage): void {

@@ -308,15 +308,14 @@ double trusted_fraction(const StepContext& context, const Increment& increment) 
 }
 
 std::string beyond_trust(const StepContext& context, const Increment& increment) {
-  constexpr double kTooFar = 3.0;
   const Turn turn = largest_turn(context, increment.reduced);
   const double farthest = farthest_move(increment);
   char text[60];
-  if (turn.angle > kTooFar * kTrustedTurn) {
+  if (turn.angle > kTrustedTurn) {
     std::snprintf(text, sizeof text, ", turned by %.3g rad in one linearisation", turn.angle);
     return std::string(turn.kind) + "." + *turn.name + text;
   }
-  if (farthest > kTooFar * kTrustedShare * context.model.size) {
+  if (farthest > kTrustedShare * context.model.size) {
     std::snprintf(text, sizeof text, "solids, moved by %.3g m in one linearisation", farthest);
     return text;
   }

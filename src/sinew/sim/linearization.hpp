@@ -159,8 +159,7 @@ void advance_by(const StepContext& context, const Increment& increment, double f
 /// nothing by more than 0.3 of the scene's size.
 double trusted_fraction(const StepContext& context, const Increment& increment);
 
-/// What an increment turns or moves by more than three times that, for people: such a linearisation says nothing about
-/// where things go. Empty if there is none.
+/// What an increment turns or moves by more than that, for people; empty if there is none.
 std::string beyond_trust(const StepContext& context, const Increment& increment);
 
 }  // namespace sinew
