@@ -127,8 +127,7 @@ int export_run(const std::filesystem::path& folder) {
   const io::Recording recording = io::read_recording(runs::recording_path(folder));
   const runs::LoadedScene loaded = runs::load_recorded(recording, runs::recording_path(folder));
   runs::RunSummary summary;
-  const bool whole =
-      !recording.steps.empty() && recording.steps.back().time >= run_duration(loaded.model.scene) * (1.0 - 1e-9);
+  const bool whole = !recording.steps.empty() && run_whole(loaded.model.scene, recording.steps.back().time);
   summary.warnings = loaded.model.warnings;
   summary.end = whole ? "done" : "unfinished";
   fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "",

@@ -100,7 +100,7 @@ std::shared_ptr<Run> read_run(const std::string& name) {
     throw InputError({path.string(), 0, "", "", "holds no finished step", "run the scene again"});
   auto shared = std::make_shared<SharedModel>(runs::load_recorded(recording, path));
   auto all = std::make_shared<Run>(Run{shared, {}, std::move(recording.steps)});
-  const bool whole = !all->steps.empty() && all->steps.back().time >= run_duration(shared->model.scene) * (1.0 - 1e-9);
+  const bool whole = !all->steps.empty() && run_whole(shared->model.scene, all->steps.back().time);
   all->summary.end = whole ? "done" : "unfinished";
   all->summary.warnings = shared->model.warnings;
   return all;

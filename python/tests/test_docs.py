@@ -157,8 +157,8 @@ def test_documents_can_be_followed_in_one_checkout() -> None:
     pages: dict[str, set[str]] = {}
     for page, found in [*PAGES.items(), ("scripts/demo", [blocks.Block("sh", [], 1, (ROOT / "scripts" / "demo").read_text())])]:
         for block in found:
-            if block.language == "sh" and "in" not in {word.split("=")[0] for word in block.words}:
-                for folder in re.findall(r"sinew (?:run|workspace)\b.*? -o (\S+)", block.text):
+            if block.language == "sh":
+                for folder in re.findall(r"sinew (?:run|workspace|export)\b.*? -o (\S+)", block.text.replace("\\\n", " ")):
                     pages.setdefault(folder, set()).add(page)
     assert len(pages) > 20
     assert {folder: found for folder, found in pages.items() if len(found) > 1} == {}

@@ -382,6 +382,27 @@ TEST_F(Picture, outputs_leave_their_ways_and_targets_stand_where_they_are) {
   EXPECT_GT(image.count(0x6b6b6b, 60, {400, 90, 500, 110}), 0);       // the outcome, behind the status
 }
 
+TEST_F(Picture, far_targets_do_not_make_the_robot_small) {
+  const Snapshot rest = beam(), end = moved(rest, bent);
+  PictureOptions options;
+  options.courses = {{"tip", Eigen::Matrix3Xd(3, 0), end.outputs[0].position + Vec3(100, 0, 0), 100.0}};
+  draw(rest, end, options);
+  EXPECT_EQ(picture_view(rest, end, options).scale, picture_view(rest, end, {}).scale);
+}
+
+TEST_F(Picture, a_long_key_stays_off_the_scale_bar) {
+  const Snapshot rest = beam();
+  Snapshot end = moved(rest, bent);
+  end.contacts = {{Vec3(0.08, 0.1, 0.02), Vec3(0, 0.234, 0), Vec3::UnitY()}};
+  end.bodies.push_back({"ball", Eigen::Matrix3Xd::Zero(3, 3), {{0, 1, 2}}, false});
+  PictureOptions options;
+  options.courses = {{"tip", Eigen::Matrix3Xd(3, 0), end.outputs[0].position, 0.0}};
+  draw(rest, end, options);
+  const double scale = picture_view(rest, end, options).scale, bar = std::ceil(230 + scale * round_below(220 / scale));
+  EXPECT_EQ(Image(png_).count(kWhitePixel, 0, {bar + 4, 900, bar + 28, 950}), 24 * 50);
+  EXPECT_LT(Image(png_).count(kWhitePixel, 0, {480, 890, 1540, 915}), 1060 * 25);  // a row above
+}
+
 TEST_F(Picture, equal_states_give_equal_files) {
   const Snapshot rest = beam(), end = moved(rest, bent);
   const auto bytes = [&] {

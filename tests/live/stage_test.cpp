@@ -389,7 +389,7 @@ TEST(Replay, RunsThatEndedEarlySaySo) {
   };
   EXPECT_THAT(trouble(0), testing::Each(""));
   std::vector<std::string> expected(5);
-  expected.back() = "The run ended here, before its time: report.json says why.";
+  expected.back() = "The recording ends here, before the end of the run.";
   EXPECT_EQ(trouble(1), expected);
 }
 

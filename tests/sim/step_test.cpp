@@ -444,6 +444,52 @@ TEST(Advance, a_jump_of_the_command_is_spread_over_the_parts_of_a_halved_step) {
   EXPECT_NEAR(trace.states.back().rods[0].q[0], 12 * mm, 1e-12);
 }
 
+/// The block alone, its free end pulled at by a force; or nothing holds it and it falls.
+Scene once_linearised_block(double force, double step) {
+  Scene scene = test::cable_block();
+  scene.rods.clear();
+  scene.couplings.clear();
+  scene.actuators.clear();
+  SolidLoad load;
+  load.solid = "block";
+  load.region = Plane{Vec3(60 * mm, 0, 0), Vec3::UnitX()};
+  load.force = Vec3(0, 0, force);
+  if (force != 0.0) scene.loads.emplace_back("push", load);
+  if (force == 0.0) scene.solids[0].second.fixed.clear();
+  scene.gravity = Vec3(0, 0, force == 0.0 ? -9.81 : 0.0);
+  scene.newton.iterations = 1;
+  scene.time = {step, 5 * step};
+  return scene;
+}
+
+TEST(Advance, a_linearisation_beyond_trust_is_refused_and_named) {
+  const Model model = build(once_linearised_block(1e5, 0.02), test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::stopped);
+  EXPECT_EQ(trace.failure.status, Status::diverged);
+  EXPECT_THAT(trace.failure.detail, testing::StartsWith("solids.block, a node moved by "));
+}
+
+TEST(Advance, a_linearisation_beyond_trust_may_go_in_halves) {
+  const Model model = build(once_linearised_block(0.5, 0.05), test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
+  EXPECT_GT(trace.reports[1].halvings, 0);
+}
+
+TEST(Advance, what_flies_as_a_whole_is_no_matter_of_trust) {
+  const double h = 0.5, g = 9.81;
+  const Model model = build(once_linearised_block(0.0, h), test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
+  for (std::size_t n = 0; n < trace.states.size(); ++n) {  // (35 m at the end)
+    EXPECT_EQ(trace.reports[n].halvings, 0);
+    const Eigen::Matrix3Xd fallen = trace.states[n].solids[0].x - model.solids[0].body.rest;
+    EXPECT_NEAR((fallen.colwise() - fallen.col(0)).norm(), 0.0, 1e-5);
+  }
+  EXPECT_NEAR(trace.states[1].solids[0].x(2, 0) - model.solids[0].body.rest(2, 0), -g * h * h / (1.0 + 0.1 * h), 1e-6);
+}
+
 TEST(Advance, the_grid_covers_the_whole_duration) {
   Scene scene;
   scene.time = {0.01, 2.0};

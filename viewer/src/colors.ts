@@ -47,10 +47,11 @@ export function withoutRounding(value: number): number {
   return Math.abs(value) < 1e-10 ? 0 : value;
 }
 
-/** A number beside an axis, in a few characters. */
+/** A number beside an axis, in few characters; ticks are round. */
 export function tickText(value: number): string {
   const text = String(Number(value.toPrecision(6)));
-  return text.length <= 7 ? text : value.toExponential(1).replace("e+", "e");
+  if (text.replace("-", "").length <= 7) return text;
+  return value.toExponential(2).replace(/\.?0+e/, "e").replace("e+", "e");
 }
 
 /** A number with its unit, as people write it: 0.0123 m is 12.3 mm. */

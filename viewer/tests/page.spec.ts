@@ -4,10 +4,16 @@ import { expect, test, type Page } from "@playwright/test";
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
+import { tickText } from "../src/colors";
 import { folder, root, Served, sinew } from "./server";
 import type { Window as Own } from "./window";
 
 declare const window: Own;
+
+test("labels of axes are short, and not rounded", () => {
+  expect([0, 0.4, -0.00125, 0.000375, 2.5e-7, 99_999, 12.5e6, -7.5e11].map(tickText)).toEqual(
+    ["0", "0.4", "-0.00125", "3.75e-4", "2.5e-7", "99999", "1.25e7", "-7.5e11"]);
+});
 
 /** Opens it and waits for frames; complaints of the page fail the test. */
 async function open(page: Page, address: string): Promise<void> {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -154,6 +155,9 @@ void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, c
   std::vector<Label> labels;
   std::vector<Area> taken;
   std::vector<Vec2> targets;
+  cairo_save(page.cairo());  // ways may lead off the page
+  cairo_rectangle(page.cairo(), kLabels.left, kLabels.top, kLabels.right - kLabels.left, kLabels.bottom - kLabels.top);
+  cairo_clip(page.cairo());
   for (const MarkSnapshot& output : end.outputs) {
     if (!drawable(output.position)) continue;
     const Vec2 place = view.project(output.position).head<2>();
@@ -180,6 +184,7 @@ void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, c
   }
   for (const Label& label : labels) draw_output_sign(page, label.place);
   for (const Vec2& target : targets) draw_target_sign(page, target);
+  cairo_restore(page.cairo());
   for (const Label& label : labels) {
     const TextStyle style{.size = 20, .bold = true};
     const Vec2 size(page.text_width(label.text, style) + 20, 34);
@@ -218,20 +223,24 @@ void draw_header(const Page& page, const Snapshot& end, const PictureOptions& op
   page.text(x + 22, 104, page.fitted(status, style, 1480 - x), style);
 }
 
-/// What the signs mean, from right to left along the foot.
+/// What the signs mean, from right to left along the foot, no further than `from`.
 void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureOptions& options,
-              bool rods_orange) {
+              bool rods_orange, double from) {
   const TextStyle style{.size = 18, .color = kInk, .bold = false, .align = 1.0};
-  double right = 1540;
-  constexpr double kBase = 936;
+  constexpr double kRight = 1540;
+  double right = kRight, base = 936;
   const auto entry = [&](const std::string& text, double room, const auto& sign) {
-    page.text(right, kBase, text, style);
-    const double left = right - page.text_width(text, style) - room;
-    sign(left);
-    right = left - 34;
+    const double width = page.text_width(text, style) + room;
+    if (right - width < from) {  // a row above
+      right = kRight;
+      base -= 30;
+    }
+    page.text(right, base, text, style);
+    sign(right - width);
+    right -= width + 34;
   };
   const auto swatch = [&](double x, const Rgb& color, double fill) {
-    cairo_rectangle(page.cairo(), x, kBase - 16, 30, 19);
+    cairo_rectangle(page.cairo(), x, base - 16, 30, 19);
     page.color(color, fill);
     cairo_fill_preserve(page.cairo());
     page.color(kGrey, 0.6);
@@ -240,31 +249,44 @@ void draw_key(const Page& page, const Snapshot& rest, const Snapshot& end, const
   };
   const auto aims = [](const Course& own) { return own.wanted.cols() > 0; };
   if (std::any_of(options.courses.begin(), options.courses.end(), aims))
-    entry("target and its way", 48, [&](double x) { draw_target_sign(page, {x + 18, kBase - 6}); });
+    entry("target and its way", 48, [&](double x) { draw_target_sign(page, {x + 18, base - 6}); });
   if (!end.outputs.empty())
     entry(rest.outputs.empty() ? "output" : "output and its way", 24, [&](double x) {
-      draw_output_sign(page, {x + 8, kBase - 6});
+      draw_output_sign(page, {x + 8, base - 6});
     });
   if (!end.contacts.empty())
     entry("contact force, up to " + readable_force(largest_force(end.contacts)), 38, [&](double x) {
-      page.line({x, kBase - 6}, {x + 30, kBase - 6}, 2.2, kForce);
+      page.line({x, base - 6}, {x + 30, base - 6}, 2.2, kForce);
     });
   if (!end.sliding_points.empty())
-    entry("sliding point", 18, [&](double x) { page.disc({x + 5, kBase - 6}, 4.5, kWhite, 1.6, kInk); });
+    entry("sliding point", 18, [&](double x) { page.disc({x + 5, base - 6}, 4.5, kWhite, 1.6, kInk); });
   if (std::any_of(end.bodies.begin(), end.bodies.end(), [](const BodySnapshot& body) { return !body.ground; }))
     entry("rigid", 40, [&](double x) { swatch(x, kMissing, 1.0); });
   if (!end.rods.empty() && rods_orange)
-    entry("rod", 42, [&](double x) { page.line({x + 3, kBase - 6}, {x + 31, kBase - 6}, 5.0, kRod); });
+    entry("rod", 42, [&](double x) { page.line({x + 3, base - 6}, {x + 31, base - 6}, 5.0, kRod); });
   if (!end.solids.empty()) {
     entry("at rest", 40, [&](double x) { swatch(x, kGrey, 0.16); });
   } else if (!rest.rods.empty()) {
     entry("at rest", 42, [&](double x) {
       const double dashes[] = {7, 7};
       cairo_set_dash(page.cairo(), dashes, 2, 0);
-      page.line({x, kBase - 6}, {x + 32, kBase - 6}, 1.6, kGrey);
+      page.line({x, base - 6}, {x + 32, base - 6}, 1.6, kGrey);
       cairo_set_dash(page.cairo(), nullptr, 0, 0);
     });
   }
+}
+
+/// Ways and targets as far as they do not make the rest small: no further from its middle than it is large.
+void add_courses(const std::vector<Course>& courses, std::vector<Sight>& sights) {
+  if (sights.empty()) return;
+  Eigen::AlignedBox3d box;
+  for (const Sight& sight : sights) box.extend(sight.point);
+  const Vec3 middle = box.center();
+  const double reach = box.diagonal().norm();
+  for (const Course& own : courses)
+    for (const Eigen::Matrix3Xd* points : {&own.way, &own.wanted})
+      for (const auto& point : points->colwise())
+        if (drawable(point) && (point - middle).norm() <= reach) sights.push_back({point, 0.0});
 }
 
 /// Everything that must be seen.
@@ -295,14 +317,12 @@ std::vector<Sight> sights_of(const Snapshot& rest, const Snapshot& end, const Pi
       for (const MarkSnapshot& mark : *marks) sights.push_back({mark.position, 0.0});
   }
   for (const CloudPoint& own : options.cloud) sights.push_back({own.at, 0.0});
-  for (const Course& own : options.courses)
-    for (const Eigen::Matrix3Xd* points : {&own.way, &own.wanted})
-      for (const auto& point : points->colwise()) sights.push_back({point, 0.0});
   std::erase_if(sights, [](const Sight& sight) { return !drawable(sight.point); });
+  add_courses(options.courses, sights);
   return sights;
 }
 
-/// What moves by less than this [m], an atom of a robot of one metre, does not move.
+/// What moves by less than this [m] does not move: an atom, where everything is within a metre of the origin.
 double roundoff_of(const std::vector<Sight>& sights) {
   double farthest = 0.0;
   for (const Sight& sight : sights) farthest = std::max(farthest, sight.point.lpNorm<Eigen::Infinity>());
@@ -369,6 +389,7 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
   const Scale scale = scale_of(all, options.color, roundoff);
 
   const Page page(kPictureWidth, kPictureHeight);
+  double foot = 0.0;  ///< where what stands there ends
   draw_header(page, end, options);
   if (!sights.empty()) {
     {
@@ -398,9 +419,9 @@ void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const 
       draw_legend(page, kLegend, options.cloud_name, largest, {1.0, options.cloud_unit}, false);
     }
     draw_triad(page, view, {120, 905});
-    draw_scale_bar(page, view, 230, 940);
+    foot = draw_scale_bar(page, view, 230, 940);
   }
-  draw_key(page, rest, end, options, rods_orange);
+  draw_key(page, rest, end, options, rods_orange, foot + 30);
   if (!all.empty() && options.cloud.empty()) {
     const bool stress = options.color == PictureColor::von_mises;
     draw_legend(page, kLegend, stress ? "von Mises" : "displacement", scale.largest,

@@ -45,9 +45,9 @@ PictureView picture_view(const Snapshot& rest, const Snapshot& end, const Pictur
 /// Draws `end` as a PNG: solids coloured and half transparent, so that the rods in them show; the shape they had in
 /// `rest` (the state at t = 0) as a pale silhouette; rods at their thickness (two pixels at least), orange, or coloured
 /// if there is no solid; sliding points as dots; forces of contacts as arrows; outputs with their names, their ways and
-/// how far they have come, or are off their targets; axes, a scale bar and a legend in readable units. Objects of the
-/// two states belong together by name. What is not finite is left out; no number makes it fail. WriteError if the file
-/// cannot be written.
+/// how far they have come, or are off their targets, which are rings; axes, a scale bar and a legend in readable units.
+/// Objects of the two states belong together by name. What is not finite is left out; no number makes it fail.
+/// WriteError if the file cannot be written.
 void draw_picture(const std::filesystem::path& png, const Snapshot& rest, const Snapshot& end,
                   const PictureOptions& options = {});
 

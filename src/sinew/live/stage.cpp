@@ -337,8 +337,8 @@ std::string Replay::frame(long number, const Wishes& wishes) {
     state = initial_state(model_);
     trouble = error.what();
   }
-  if (trouble.empty() && number == frames() - 1 && step.time < run_duration(model_.scene) * (1.0 - 1e-9))
-    trouble = "The run ended here, before its time: report.json says why.";
+  if (trouble.empty() && number == frames() - 1 && !run_whole(model_.scene, step.time))
+    trouble = "The recording ends here, before the end of the run.";
   const auto acts = [](const ContactState& own) { return !own.force.isZero(); };
   const auto contacts = std::count_if(state.contacts.begin(), state.contacts.end(), acts);
   return scenery_.frame(state, wishes.show, goal_at(model_, step.time),

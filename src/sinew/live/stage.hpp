@@ -99,8 +99,8 @@ class Replay {
 
   std::string scene();
   void take(const Request& request);
-  /// One frame of it; of a step that cannot be read the start, and why; of the last whether it was the run's. Not while
-  /// it plays.
+  /// One frame of it; of a step that cannot be read the start, and why. The last one says so if the run was not whole.
+  /// Not while it plays.
   std::string frame(long number, const Wishes& wishes);
   long frames() const { return static_cast<long>(recording_.steps.size()); }
 

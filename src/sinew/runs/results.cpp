@@ -16,7 +16,6 @@
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/signals.hpp"
-#include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
 
 namespace sinew::runs {
@@ -183,37 +182,37 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
   std::ofstream(path) << report.dump(1) << "\n";
 }
 
-/// A point that stands in three columns of the signals, by its name; nothing if there are none.
-Eigen::Matrix3Xd points_of(const io::Recording& recording, const std::string& name) {
+/// `rows` columns of the signals from the one of this name on, one column a step; nothing if there is none.
+Eigen::MatrixXd signals_from(const io::Recording& recording, const std::string& name, Eigen::Index rows) {
   const std::vector<std::string>& names = recording.header.signal_names;
-  const auto found = std::find(names.begin(), names.end(), name + ".x");
+  const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) return {};
   const auto first = static_cast<std::size_t>(found - names.begin());
-  Eigen::Matrix3Xd points(3, std::ssize(recording.steps));
+  Eigen::MatrixXd values(rows, std::ssize(recording.steps));
   for (std::size_t i = 0; i < recording.steps.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::Vector3d>(&recording.steps[i].signals[first]);
-  return points;
+    values.col(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::VectorXd>(&recording.steps[i].signals[first], rows);
+  return values;
 }
 
 /// Of outputs of position. Where a target does not care, it is where its output is.
 std::vector<io::Course> courses(const Model& model, const io::Recording& recording) {
   std::vector<io::Course> found;
   if (model.scene.analysis == Analysis::modal) return found;  // (modes do not follow each other)
-  for (const OutputModel& output : model.outputs) {
-    if (output.quantity == Quantity::position)
-      found.push_back({output.name, points_of(recording, output.name), {}, 0.0});
-  }
-  const State last = unpack(model, recording.steps.back().state);
-  Eigen::VectorXd errors;
-  effector_errors(model, last, goal_at(model, last.time), errors);
-  for (const EffectorModel& own : model.effectors) {
-    const std::string& name = model.outputs[own.output].name;
-    const auto course = std::find_if(found.begin(), found.end(), [&](const auto& one) { return one.output == name; });
-    if (course == found.end()) continue;
-    course->wanted = points_of(recording, name + ".target");
-    course->off = error_of(own, errors);
-    for (int i = 0; i < 3 && course->wanted.cols() > 0; ++i)
-      if (own.weights[i] == 0.0) course->wanted.row(i) = course->way.row(i);
+  for (int i = 0; i < static_cast<int>(model.outputs.size()); ++i) {
+    const OutputModel& output = model.outputs[i];
+    if (output.quantity != Quantity::position) continue;
+    io::Course course{output.name, signals_from(recording, output.name + ".x", 3), Eigen::Matrix3Xd(3, 0), 0.0};
+    const auto aims = [i](const EffectorModel& own) { return own.output == i; };
+    const auto effector = std::find_if(model.effectors.begin(), model.effectors.end(), aims);
+    const Eigen::MatrixXd wanted = signals_from(recording, output.name + ".target.x", 3);
+    if (effector != model.effectors.end() && wanted.cols() > 0) {
+      course.wanted = wanted;
+      for (int axis = 0; axis < 3; ++axis)
+        if (effector->weights[axis] == 0.0) course.wanted.row(axis) = course.way.row(axis);
+      course.off = signals_from(recording, output.name + ".error", 1).rightCols<1>()(0);
+    }
+    found.push_back(std::move(course));
   }
   return found;
 }

@@ -48,7 +48,10 @@ double tautness(const Model& model, const State& state, int number) {
     const double s = 0.5 * (section.begin + section.end), l = section.length();
     const Eigen::Matrix<double, 6, 6> stiffness = rod::stiffness_at(rod.profile, s);
     const double tension = internal_wrench(model, state, number, s)[3];
-    most = std::max(most, tension * l * l / std::min(stiffness(1, 1), stiffness(2, 2)));
+    for (const rod::Mode& mode : section.modes) {
+      if (mode.strain == 1 || mode.strain == 2)
+        most = std::max(most, tension * l * l / stiffness(mode.strain, mode.strain));
+    }
   }
   return most;
 }

@@ -17,7 +17,8 @@ void write_internal(const std::vector<rod::Balance>& along, RodState& state);
 rod::Vec6 internal_wrench(const Model& model, const State& state, int number, double s);
 
 /// By how much the tension of a rod outweighs its bending stiffness: T l^2 / (E I) of the section of length l where
-/// that is largest, E I the smaller one at its middle; 0 under pressure.
+/// that is largest, at its middle, with the smallest E I of the axes it can bend about; 0 under pressure, or if it
+/// cannot bend.
 double tautness(const Model& model, const State& state, int number);
 
 /// The largest stresses of the cross-section at s.

@@ -290,34 +290,33 @@ namespace {
 constexpr double kTrustedTurn = 0.8;   ///< [rad]
 constexpr double kTrustedShare = 0.3;  ///< of the scene's size
 
-double farthest_move(const Increment& increment) {
-  double farthest = 0.0;
-  for (const Eigen::Matrix3Xd& dx : increment.dx) farthest = std::max(farthest, dx.cwiseAbs().maxCoeff());
-  return farthest;
-}
-
 }  // namespace
 
 double trusted_fraction(const StepContext& context, const Increment& increment) {
-  const double turn = largest_turn(context, increment.reduced).angle, farthest = farthest_move(increment);
-  const double trusted = kTrustedShare * context.model.size;
-  double fraction = 1.0;
+  double fraction = 1.0, farthest = 0.0;
+  for (const Eigen::Matrix3Xd& dx : increment.dx) farthest = std::max(farthest, dx.cwiseAbs().maxCoeff());
+  const double turn = largest_turn(context, increment.reduced), trusted = kTrustedShare * context.model.size;
   if (turn > kTrustedTurn) fraction = kTrustedTurn / turn;
   if (farthest > trusted) fraction = std::min(fraction, trusted / farthest);
   return fraction;
 }
 
 std::string beyond_trust(const StepContext& context, const Increment& increment) {
-  const Turn turn = largest_turn(context, increment.reduced);
-  const double farthest = farthest_move(increment);
-  char text[60];
-  if (turn.angle > kTrustedTurn) {
-    std::snprintf(text, sizeof text, ", turned by %.3g rad in one linearisation", turn.angle);
-    return std::string(turn.kind) + "." + *turn.name + text;
+  const Model& model = context.model;
+  char text[80];
+  const Bend bend = largest_bend(context, increment.reduced);
+  if (bend.angle > kTrustedTurn) {
+    std::snprintf(text, sizeof text, ", a section bent by %.3g rad in one linearisation", bend.angle);
+    return "rods." + model.rods[bend.rod].name + text;
   }
-  if (farthest > kTrustedShare * context.model.size) {
-    std::snprintf(text, sizeof text, "solids, moved by %.3g m in one linearisation", farthest);
-    return text;
+  for (std::size_t i = 0; i < increment.dx.size(); ++i) {
+    const Eigen::Matrix3Xd& dx = increment.dx[i];
+    if (!(dx.cwiseAbs().maxCoeff() > kTrustedShare * model.size)) continue;
+    const Vec3 along = dx.rowwise().mean();  // of it, any distance is exact
+    const double moved = (dx.colwise() - along).cwiseAbs().maxCoeff();
+    if (!(moved > kTrustedShare * model.size)) continue;
+    std::snprintf(text, sizeof text, ", a node moved by %.3g m in one linearisation", moved);
+    return "solids." + model.solids[i].name + text;
   }
   return {};
 }

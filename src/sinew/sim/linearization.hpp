@@ -159,7 +159,8 @@ void advance_by(const StepContext& context, const Increment& increment, double f
 /// nothing by more than 0.3 of the scene's size.
 double trusted_fraction(const StepContext& context, const Increment& increment);
 
-/// What an increment turns or moves by more than that, for people; empty if there is none.
+/// What an increment bends or deforms by more than that, for people; empty if there is none. What rigid bodies, bases
+/// and whole solids do does not count: their motions are exact, or nearly.
 std::string beyond_trust(const StepContext& context, const Increment& increment);
 
 }  // namespace sinew

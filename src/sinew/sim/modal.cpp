@@ -160,7 +160,7 @@ double largest_motion(const Model& model, const StepContext& context, const Stat
   double largest = 0.0;
   for (const Eigen::Matrix3Xd& dx : shape.dx) largest = std::max(largest, dx.colwise().norm().maxCoeff());
   State moved = state;
-  const double e = 1e-6 / std::max(1e-12, largest_turn(context, shape.reduced).angle);
+  const double e = 1e-6 / std::max(1e-12, largest_turn(context, shape.reduced));
   advance_by(context, shape, e, moved);
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const auto a = rod_shape(model, state, static_cast<int>(i)), b = rod_shape(model, moved, static_cast<int>(i));
@@ -283,7 +283,7 @@ StepResult modal_step(const Model& model, Workspace& workspace, const State& sta
   State shown = found.next;
   const StepContext context = make_context(model, found.next, command_at(model, 0.0), 0.0);
   const double motion = largest_motion(model, context, shown, modes[number].shape);
-  const double turn = largest_turn(context, modes[number].shape.reduced).angle;
+  const double turn = largest_turn(context, modes[number].shape.reduced);
   const double amplitude = motion > 0.0 ? 0.1 * model.size / motion : turn > 0.0 ? 0.5 / turn : 0.0;
   advance_by(context, modes[number].shape, amplitude, shown);
   shown.grid = state.grid + 1;

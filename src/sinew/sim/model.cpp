@@ -250,8 +250,10 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     model.solids.push_back(build_solid(scene, name, solid, read_mesh, model.warnings));
     warn_of_locking(model, model.solids.back());
     warn_of_holes(model, model.solids.back());
-    for (const solid::Material& material : model.solids.back().body.materials)
-      warn_of_softness(solid::young(solid::lame(material.law)), "solids." + name, model.warnings);
+    const std::vector<solid::Material>& materials = model.solids.back().body.materials;  // its own, those of parts
+    for (std::size_t i = 0; i < materials.size(); ++i)
+      warn_of_softness(solid::young(solid::lame(materials[i].law)),
+                       "solids." + name + (i == 0 ? "" : ".parts." + std::to_string(i - 1)), model.warnings);
   }
   for (const auto& [name, rod] : scene.rods) {
     if (rod.cable == Cable::geometric) {
@@ -263,6 +265,10 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
         model.warnings.push_back("rods." + name + ": it starts " + text(built.path_deviation) +
                                  " m off its path, which its sections and strains cannot follow");
       if (rod.material.young > 0.0) warn_of_softness(rod.material.young, "rods." + name, model.warnings);
+      for (std::size_t i = 0; i < rod.parts.size(); ++i) {
+        if (const double young = rod.parts[i].material.young; young > 0.0)
+          warn_of_softness(young, "rods." + name + ".parts." + std::to_string(i), model.warnings);
+      }
       const double radius = rod::radius_at(built.rod.profile, 0.0);
       if (radius > 0.5 * built.rod.length())
         model.warnings.push_back("rods." + name + ": its radius of " + text(radius) +

@@ -23,7 +23,8 @@ struct AcrossPath {
 /// How Newton is to go.
 struct NewtonRules {
   int limit = 0;       ///< most rounds
-  bool fixed = false;  ///< so many rounds with definite tangents, whatever is left (`newton: 1` of the paper)
+  bool fixed = false;  ///< so many rounds with definite tangents, whatever is left (`newton: 1` of the paper), none of
+                       ///< which goes `beyond_trust`
   /// Which equilibrium is looked for: the nearest minimum, by steps that are shortened where they lead away from it, or
   /// any at all, by steps that are only limited to what a linearisation can be trusted for.
   Linearization::Wanted wanted = Linearization::Wanted::descent;

@@ -269,28 +269,33 @@ void advance_reduced(const StepContext& context, const solve::CoupledSolution& s
   iterate.lambda += fraction * solution.dlambda;
 }
 
-Turn largest_turn(const StepContext& context, const solve::CoupledSolution& solution) {
-  Turn largest;
-  const auto count = [&largest](double angle, const char* kind, const std::string& name) {
-    if (angle > largest.angle) largest = {angle, kind, &name};
-  };
-  for (const BodyModel& body : context.model.bodies)
-    count(solution.dz.segment<3>(body.unknown + 3).norm(), "bodies", body.name);
+Bend largest_bend(const StepContext& context, const solve::CoupledSolution& solution) {
+  Bend largest;
   for (std::size_t n = 0; n < context.model.rods.size(); ++n) {
-    const RodModel& model = context.model.rods[n];
-    const rod::Rod& rod = model.rod;
-    for (int i = 0; i < rod.base_coordinates(); ++i) {
-      if (rod.base[i].turns) count(std::abs(solution.dz[model.unknown + i]), "rods", model.name);
-    }
+    const rod::Rod& rod = context.model.rods[n].rod;
     for (int i = 0; i < rod.count(); ++i) {
       for (std::size_t c = 0; c < rod.sections[i].modes.size(); ++c) {
         if (rod.sections[i].modes[c].strain >= 3) continue;
         const double dq = solution.dq[n][rod.first[i] + static_cast<int>(c)];
-        count(std::abs(dq) * rod.sections[i].length(), "rods", model.name);
+        const double angle = std::abs(dq) * rod.sections[i].length();
+        if (angle > largest.angle) largest = {angle, static_cast<int>(n)};
       }
     }
   }
   return largest;
+}
+
+double largest_turn(const StepContext& context, const solve::CoupledSolution& solution) {
+  double turn = largest_bend(context, solution).angle;
+  for (const BodyModel& body : context.model.bodies)
+    turn = std::max(turn, solution.dz.segment<3>(body.unknown + 3).norm());
+  for (const RodModel& model : context.model.rods) {
+    const rod::Rod& rod = model.rod;
+    for (int i = 0; i < rod.base_coordinates(); ++i) {
+      if (rod.base[i].turns) turn = std::max(turn, std::abs(solution.dz[model.unknown + i]));
+    }
+  }
+  return turn;
 }
 
 }  // namespace sinew

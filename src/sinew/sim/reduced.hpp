@@ -47,14 +47,16 @@ void clear(const Model& model, solve::RightSide& side);
 void advance_reduced(const StepContext& context, const solve::CoupledSolution& solution, double fraction,
                      State& iterate);
 
-/// A rotation [rad], and whose: "rods" or "bodies", and its name.
-struct Turn {
+/// By how much a rod's section bends or twists [rad] from its one end to the other.
+struct Bend {
   double angle = 0.0;
-  const char* kind = "";
-  const std::string* name = nullptr;
+  int rod = -1;
 };
 
-/// The largest rotation of a rigid body or of a rod's section or base that a solution asks for.
-Turn largest_turn(const StepContext& context, const solve::CoupledSolution& solution);
+/// The largest that a solution asks for, of one strain by itself; `rod` is -1 without any.
+Bend largest_bend(const StepContext& context, const solve::CoupledSolution& solution);
+
+/// The largest rotation [rad] of a rigid body or of a rod's section or base that a solution asks for.
+double largest_turn(const StepContext& context, const solve::CoupledSolution& solution);
 
 }  // namespace sinew

@@ -107,6 +107,8 @@ double run_duration(const Scene& scene) {
   return static_cast<double>(grid_steps(scene)) * scene.time.step;
 }
 
+bool run_whole(const Scene& scene, double time) { return time >= run_duration(scene) * (1.0 - 1e-9); }
+
 RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure, int threads) {
   Workspace workspace = make_workspace(model, threads);
   const long steps = grid_steps(model.scene);

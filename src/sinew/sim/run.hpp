@@ -29,6 +29,8 @@ long grid_steps(const Scene& scene);
 
 /// The time at which a run ends [s]; of a modal analysis the number of modes.
 double run_duration(const Scene& scene);
+/// Whether a run that has come to this time is through.
+bool run_whole(const Scene& scene, double time);
 
 enum class RunEnd { done, stopped, interrupted };
 

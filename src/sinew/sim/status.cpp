@@ -43,9 +43,8 @@ std::string_view explain(Status status) {
              "massless rod that no coupling ties), or the body has collapsed. Look at the last picture; try a smaller "
              "step.";
     case Status::diverged:
-      return "Numbers grew without bound. Try a smaller time step or a slower motion; with `newton: 1`, converged "
-             "steps "
-             "(leave `newton` out) or more stiffness damping (rayleigh).";
+      return "Numbers grew without bound, or a linearisation went further than it says anything about. Try "
+             "a smaller time step, a slower motion or more damping; with `newton: n`, leave that out.";
     case Status::inverted:
       return "An element turned inside out, beyond where its law is defined. Take shorter steps, a finer mesh there, "
              "or a law that goes on (neo_hookean, corotational).";
