@@ -474,7 +474,8 @@ TEST(Advance, a_linearisation_beyond_trust_may_go_in_halves) {
   const Model model = build(once_linearised_block(0.5, 0.05), test::read_block);
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
-  EXPECT_GT(trace.reports[1].halvings, 0);
+  EXPECT_TRUE(
+      std::any_of(trace.reports.begin(), trace.reports.end(), [](const auto& own) { return own.halvings > 0; }));
 }
 
 TEST(Advance, what_flies_as_a_whole_is_no_matter_of_trust) {
@@ -482,9 +483,9 @@ TEST(Advance, what_flies_as_a_whole_is_no_matter_of_trust) {
   const Model model = build(once_linearised_block(0.0, h), test::read_block);
   const test::Trace trace = test::run_all(model);
   ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
-  for (std::size_t n = 0; n < trace.states.size(); ++n) {  // (35 m at the end)
-    EXPECT_EQ(trace.reports[n].halvings, 0);
-    const Eigen::Matrix3Xd fallen = trace.states[n].solids[0].x - model.solids[0].body.rest;
+  for (const StepReport& report : trace.reports) EXPECT_EQ(report.halvings, 0);
+  for (const State& state : trace.states) {  // (35 m at the end)
+    const Eigen::Matrix3Xd fallen = state.solids[0].x - model.solids[0].body.rest;
     EXPECT_NEAR((fallen.colwise() - fallen.col(0)).norm(), 0.0, 1e-5);
   }
   EXPECT_NEAR(trace.states[1].solids[0].x(2, 0) - model.solids[0].body.rest(2, 0), -g * h * h / (1.0 + 0.1 * h), 1e-6);
