@@ -32,21 +32,30 @@ const Object* named(const std::vector<Object>& objects, const std::string& name)
   return nullptr;
 }
 
-void draw_rest_rod(const Page& page, const RodSnapshot& rod, const PictureView& view) {
-  cairo_t* cairo = page.cairo();
-  const double dashes[] = {7, 7};
-  cairo_set_dash(cairo, dashes, 2, 0);
-  page.color(kGrey, 0.6);
-  cairo_set_line_width(cairo, 1.6);
+/// A line through points as they are seen; nearer than a pixel to the last one they are left out: runs have many steps.
+void draw_line(const Page& page, const Eigen::Matrix3Xd& points, const PictureView& view, double width,
+               const Rgb& color, double alpha = 1.0) {
+  cairo_new_path(page.cairo());
+  page.color(color, alpha);
+  cairo_set_line_width(page.cairo(), width);
   bool started = false;
-  for (Eigen::Index i = 0; i < rod.points.cols(); ++i) {
-    if (!drawable(rod.points.col(i))) continue;
-    const Vec3 place = view.project(rod.points.col(i));
-    started ? cairo_line_to(cairo, place.x(), place.y()) : cairo_move_to(cairo, place.x(), place.y());
+  Vec2 last;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!drawable(points.col(i))) continue;
+    const Vec2 place = view.project(points.col(i)).head<2>();
+    if (started && (place - last).norm() < 1.0) continue;
+    started ? cairo_line_to(page.cairo(), place.x(), place.y()) : cairo_move_to(page.cairo(), place.x(), place.y());
     started = true;
+    last = place;
   }
-  cairo_stroke(cairo);
-  cairo_set_dash(cairo, nullptr, 0, 0);
+  cairo_stroke(page.cairo());
+}
+
+void draw_rest_rod(const Page& page, const RodSnapshot& rod, const PictureView& view) {
+  const double dashes[] = {7, 7};
+  cairo_set_dash(page.cairo(), dashes, 2, 0);
+  draw_line(page, rod.points, view, 1.6, kGrey, 0.6);
+  cairo_set_dash(page.cairo(), nullptr, 0, 0);
 }
 
 // ---- marks -------------------------------------------------------------------------------------------------------
@@ -108,24 +117,6 @@ void draw_target_sign(const Page& page, const Vec2& place) {
     page.line(place + kRing * way, place + kTick * way, 2.4, kTarget);
 }
 
-void draw_line(const Page& page, const Eigen::Matrix3Xd& points, const PictureView& view, double width,
-               const Rgb& color) {
-  cairo_new_path(page.cairo());
-  page.color(color);
-  cairo_set_line_width(page.cairo(), width);
-  bool started = false;
-  Vec2 last;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (!drawable(points.col(i))) continue;
-    const Vec2 place = view.project(points.col(i)).head<2>();
-    if (started && (place - last).norm() < 1.0) continue;  // (runs have many steps)
-    started ? cairo_line_to(page.cairo(), place.x(), place.y()) : cairo_move_to(page.cairo(), place.x(), place.y());
-    started = true;
-    last = place;
-  }
-  cairo_stroke(page.cairo());
-}
-
 /// The way of an output from its old place: as it was, or dotted from end to end.
 void draw_way(const Page& page, const Vec2& from, const Vec2& to, const Course* course, const PictureView& view) {
   const bool far = (to - from).norm() >= 14.0;
@@ -138,12 +129,6 @@ void draw_way(const Page& page, const Vec2& from, const Vec2& to, const Course* 
     cairo_set_dash(page.cairo(), nullptr, 0, 0);
   }
   if (far) page.disc(from, 4.5, kWhite, 1.8, kOutput);
-}
-
-const Course* course_of(const PictureOptions& options, const std::string& output) {
-  for (const Course& own : options.courses)
-    if (own.output == output) return &own;
-  return nullptr;
 }
 
 void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, const PictureOptions& options,
@@ -162,7 +147,7 @@ void draw_outputs(const Page& page, const Snapshot& rest, const Snapshot& end, c
     if (!drawable(output.position)) continue;
     const Vec2 place = view.project(output.position).head<2>();
     const MarkSnapshot* before = named(rest.outputs, output.name);
-    const Course* course = course_of(options, output.name);
+    const Course* course = named(options.courses, output.name);
     const bool aims = course != nullptr && course->wanted.cols() > 0;
     if (aims) draw_line(page, course->wanted, view, 1.8, kTarget);
     std::string text = page.fitted(printable(output.name), {.size = 20, .bold = true}, 300);

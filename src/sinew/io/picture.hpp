@@ -20,7 +20,7 @@ struct CloudPoint {
 
 /// Where an output was over a run, and where it was to be.
 struct Course {
-  std::string output;
+  std::string name;
   Eigen::Matrix3Xd way;     ///< [m]
   Eigen::Matrix3Xd wanted;  ///< [m] the last is the target; empty without one
   double off = 0.0;         ///< [m] how far the output is off its target, in what counts

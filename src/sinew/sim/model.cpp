@@ -154,9 +154,9 @@ void warn_of_locking(Model& model, const SolidModel& solid) {
   }
 }
 
-/// The softest gels have some 100 Pa.
+/// The softest gels have some 100 Pa. 0 is none, of a section whose stiffness is given.
 void warn_of_softness(double young, const std::string& path, std::vector<std::string>& warnings) {
-  if (young < 50.0)
+  if (young > 0.0 && young < 50.0)
     warnings.push_back(path + ": Young's modulus is " + text(young) +
                        " Pa, less than that of any gel: numbers without a unit are pascals");
 }
@@ -264,11 +264,9 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
       if (built.path_deviation > 0.01 * built.rod.length())
         model.warnings.push_back("rods." + name + ": it starts " + text(built.path_deviation) +
                                  " m off its path, which its sections and strains cannot follow");
-      if (rod.material.young > 0.0) warn_of_softness(rod.material.young, "rods." + name, model.warnings);
-      for (std::size_t i = 0; i < rod.parts.size(); ++i) {
-        if (const double young = rod.parts[i].material.young; young > 0.0)
-          warn_of_softness(young, "rods." + name + ".parts." + std::to_string(i), model.warnings);
-      }
+      warn_of_softness(rod.material.young, "rods." + name, model.warnings);
+      for (std::size_t i = 0; i < rod.parts.size(); ++i)
+        warn_of_softness(rod.parts[i].material.young, "rods." + name + ".parts." + std::to_string(i), model.warnings);
       const double radius = rod::radius_at(built.rod.profile, 0.0);
       if (radius > 0.5 * built.rod.length())
         model.warnings.push_back("rods." + name + ": its radius of " + text(radius) +

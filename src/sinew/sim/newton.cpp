@@ -187,10 +187,12 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       iterate.t += dt;
       continue;
     }
-    if (rules.fixed) {
-      if (std::string lost = beyond_trust(context, increment); !lost.empty()) return fail(Status::diverged, lost);
+    double fraction = 1.0;
+    if (!rules.fixed) {
+      fraction = trusted_fraction(context, increment);
+    } else if (std::string lost = beyond_trust(context, increment); !lost.empty()) {
+      return fail(Status::diverged, std::move(lost));
     }
-    const double fraction = rules.fixed ? 1.0 : trusted_fraction(context, increment);
     if (descent) memory.search.take(iterate.state, increment, fraction, here);
     advance_by(context, increment, fraction, iterate.state);
     if (rules.inverse) rules.inverse->take(fraction, context.model, context.command);
