@@ -112,7 +112,7 @@ void print_contact(const Model& model) {
 
 }  // namespace
 
-int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
+int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides, bool strict) {
   const runs::LoadedScene loaded = runs::load(io::read_scene(scene, overrides));
   const Model& model = loaded.model;
   switch (model.scene.analysis) {
@@ -148,14 +148,14 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
                                                                   : "");
   }
   print_contact(model);
-  for (const std::string& warning : model.warnings) fmt::print("warning: {}\n", warning);
+  for (const Warning& warning : model.warnings) fmt::print("warning: {}\n", to_string(warning));
   int unknowns = model.unknowns;
   for (const RodModel& rod : model.rods) unknowns += rod.rod.strain_coordinates();
   fmt::print(
-      "The scene is sound: {} unknowns of rods, points and bodies, {} constraint rows. Run it with: sinew run {} -o "
+      "The scene is sound{}: {} unknowns of rods, points and bodies, {} constraint rows. Run it with: sinew run {} -o "
       "out\n",
-      unknowns, model.rows, scene.string());
-  return kDone;
+      model.warnings.empty() ? "" : " but for what is warned of above", unknowns, model.rows, scene.string());
+  return strict && !model.warnings.empty() ? kWarned : kDone;
 }
 
 namespace {

@@ -8,7 +8,7 @@
 namespace sinew::app {
 
 // Exit codes (NOTATION.md).
-inline constexpr int kDone = 0, kBadInput = 2, kNumericalStop = 3, kInterrupted = 130;
+inline constexpr int kDone = 0, kBadInput = 2, kNumericalStop = 3, kWarned = 4, kInterrupted = 130;
 
 struct RunOptions {
   std::filesystem::path scene;
@@ -19,7 +19,8 @@ struct RunOptions {
   bool force = false;
   bool quiet = false;
   bool profile = false;
-  int threads = 0;  ///< 0: two, if the machine has them
+  bool strict = false;  ///< warnings have an exit code of their own
+  int threads = 0;      ///< 0: two, if the machine has them
 };
 
 struct WorkspaceOptions {
@@ -46,7 +47,7 @@ int run_scene(const RunOptions& options);
 int view(const ViewOptions& options);
 int export_page(const std::filesystem::path& folder, const std::filesystem::path& file, int frames);
 int map_workspace(const WorkspaceOptions& options);
-int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides, bool strict);
 int describe_mesh(const std::filesystem::path& path);
 int export_run(const std::filesystem::path& folder);
 int print_schema();

@@ -27,7 +27,8 @@ Examples:
   sinew info finger.vtk                               sizes and quality of a mesh
   sinew schema > sinew.schema.json                    JSON Schema of scene files, for editors
 
-Exit codes: 0 done, 2 bad input, 3 numerical stop (results kept), 130 interrupted (results kept).)";
+Exit codes: 0 done, 2 bad input, 3 numerical stop (results kept), 4 warnings (with --strict; results kept),
+130 interrupted (results kept).)";
 
 }  // namespace
 
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
       ->excludes(replay);
   run->add_flag("--force", options.force, "Replace the results of an earlier run in the folder");
   run->add_flag("-q,--quiet", options.quiet, "No progress");
+  run->add_flag("--strict", options.strict, "End with exit code 4 where anything was warned of");
   run->add_flag("--profile", options.profile, "Show at the end where the time went, stage by stage");
   run->add_option("--threads", options.threads, "Threads that share a step; the results are the same for any number")
       ->check(CLI::Range(1, 64))
@@ -61,9 +63,12 @@ int main(int argc, char** argv) {
 
   std::filesystem::path checked;
   std::vector<std::string> check_overrides;
+  bool check_strict = false;
   CLI::App* check = program.add_subcommand("check", "Read and build a scene and explain what came of it; does not run");
   check->add_option("scene", checked, "Scene file (YAML)")->required();
   check->add_option("--set", check_overrides, "Change the scene: path=value")->type_name("PATH=VALUE");
+
+  check->add_flag("--strict", check_strict, "End with exit code 4 where anything is warned of");
 
   sinew::app::WorkspaceOptions reach;
   CLI::App* workspace = program.add_subcommand(
@@ -137,7 +142,7 @@ int main(int argc, char** argv) {
   try {
     if (*run) return sinew::app::run_scene(options);
     if (*workspace) return sinew::app::map_workspace(reach);
-    if (*check) return sinew::app::check_scene(checked, check_overrides);
+    if (*check) return sinew::app::check_scene(checked, check_overrides, check_strict);
     if (*info) return sinew::app::describe_mesh(mesh);
     if (*view) return sinew::app::view(viewed);
     if (*views)

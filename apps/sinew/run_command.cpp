@@ -52,14 +52,14 @@ void print_targets(const Model& model, const State& state, const io::Recording& 
   }
 }
 
-void warn(const std::string& warning) { fmt::print(stderr, "warning: {}\n", warning); }
+void warn(const Warning& warning) { fmt::print(stderr, "warning: {}\n", to_string(warning)); }
 
 /// Steps from a state to the end, records them, writes the views, tells the user; returns the exit code.
 int run_and_record(const runs::LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
                    io::RecordingWriter writer, const RunOptions& options) {
   const Model& model = loaded.model;
   Progress progress("sinew " + loaded.file.path.filename().string(), run_duration(model.scene), options.quiet);
-  const std::vector<std::string> before = runs::warnings_before(model);
+  const std::vector<Warning> before = runs::warnings_before(model);
   std::for_each(before.begin(), before.end(), warn);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
@@ -70,9 +70,10 @@ int run_and_record(const runs::LoadedScene& loaded, const State& start, const st
         return !interrupted.load();
       },
       options.threads > 0 ? options.threads : runs::usual_threads());
-  std::for_each(summary.warnings.begin() + static_cast<std::ptrdiff_t>(before.size()), summary.warnings.end(), warn);
 
   const io::Recording recording = io::read_recording(runs::recording_path(folder));
+  const std::vector<Warning> warnings = runs::all_warnings(model, summary, recording.steps);
+  std::for_each(warnings.begin() + static_cast<std::ptrdiff_t>(before.size()), warnings.end(), warn);
   progress.finish(fmt::format("{}, {} steps", when(model, last), recording.steps.size() - 1));
   if (!options.quiet && !model.effectors.empty()) print_targets(model, last, recording);
   const std::vector<std::string> files = runs::write_views(folder, loaded, recording, summary);
@@ -88,7 +89,8 @@ int run_and_record(const runs::LoadedScene& loaded, const State& start, const st
     for (const std::string& file : files) fmt::print("  {}\n", file);
   }
   if (options.profile) fmt::print("{}", runs::profile(summary));
-  return end == RunEnd::done ? kDone : end == RunEnd::stopped ? kNumericalStop : kInterrupted;
+  if (end != RunEnd::done) return end == RunEnd::stopped ? kNumericalStop : kInterrupted;
+  return options.strict && !warnings.empty() ? kWarned : kDone;
 }
 
 int resume(const RunOptions& options) {
@@ -128,7 +130,7 @@ int export_run(const std::filesystem::path& folder) {
   const runs::LoadedScene loaded = runs::load_recorded(recording, runs::recording_path(folder));
   runs::RunSummary summary;
   const bool whole = !recording.steps.empty() && run_whole(loaded.model.scene, recording.steps.back().time);
-  summary.warnings = loaded.model.warnings;
+  summary.warnings = runs::warnings_before(loaded.model);
   summary.end = whole ? "done" : "unfinished";
   fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "",
              recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);

@@ -125,7 +125,7 @@ int view(const ViewOptions& options) {
   const std::filesystem::path folder = options.folder.empty() ? options.what.parent_path() : options.folder;
   const runs::LoadedScene loaded =
       runs::load(io::parse_scene(io::read_text(options.what), options.what, folder, options.overrides));
-  for (const std::string& warning : loaded.model.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const Warning& warning : loaded.model.warnings) fmt::print(stderr, "warning: {}\n", to_string(warning));
   return serve(options, loaded.model, [&](live::OnFrame on_frame) {
     return std::make_unique<live::Simulation>(
         loaded.model, options.threads > 0 ? options.threads : runs::usual_threads(), std::move(on_frame));

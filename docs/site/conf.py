@@ -34,7 +34,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton"]
 CONTENTS = {
     "Tutorials": [f"docs/tutorials/{page}" for page in ("finger", "gripper", "trunk", "rod_robot", "inverse", "contact", "python")],
     "How to": ["docs/howto/own_mesh", "docs/howto/sections_and_step", "docs/howto/reading_forces", "docs/howto/troubleshooting"],
-    "Features": ["docs/solids", "docs/rods", "docs/contact", "docs/inverse", "docs/python", "docs/page", "NOTATION", "examples/meshes/README"],
+    "Features": ["docs/solids", "docs/rods", "docs/contact", "docs/inverse", "docs/warnings", "docs/python", "docs/page", "NOTATION", "examples/meshes/README"],
     "Theory": ["docs/theory", "src/sinew/*/README"],
     "Evidence": ["docs/validation*", "examples/paper/README*", "examples/validation/README*", "examples/*/*/README", "docs/points", "docs/newton", "docs/elements", "bench/README"],
     "Python API": ["docs/api/python/*"],

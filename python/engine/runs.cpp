@@ -102,7 +102,7 @@ std::shared_ptr<Run> read_run(const std::string& name) {
   auto all = std::make_shared<Run>(Run{shared, {}, std::move(recording.steps)});
   const bool whole = !all->steps.empty() && run_whole(shared->model.scene, all->steps.back().time);
   all->summary.end = whole ? "done" : "unfinished";
-  all->summary.warnings = shared->model.warnings;
+  all->summary.warnings = runs::warnings_before(shared->model);
   return all;
 }
 
@@ -147,21 +147,41 @@ nb::dict signals_of(const Run& own) {
   return all;
 }
 
+nb::list reduced(const std::vector<Warning>& warnings) {
+  nb::list all;
+  for (const Warning& own : warnings)
+    all.append(nb::make_tuple(own.code, own.where, own.message, own.remedy, own.time, own.value, own.limit, own.unit,
+                              own.steps));
+  return all;
+}
+
+std::vector<Warning> restored_warnings(nb::handle all) {
+  std::vector<Warning> warnings;
+  for (const nb::handle own : nb::iter(all)) {
+    const auto text = [&](int i) { return nb::cast<std::string>(own[i]); };
+    const auto number = [&](int i) { return nb::cast<double>(own[i]); };
+    warnings.push_back(
+        {text(0), text(1), text(2), text(3), number(4), number(5), number(6), text(7), nb::cast<long>(own[8])});
+  }
+  return warnings;
+}
+
 nb::tuple reduced(const Run& own) {
   nb::list steps;
   for (const io::RecordedStep& step : own.steps)
     steps.append(nb::make_tuple(step.time, step.status, step.targets, step.newton, step.residual, step.violation,
-                                vector_of(step.signals), vector_of(step.state)));
+                                vector_of(step.signals), vector_of(step.state), reduced(step.warnings)));
   const StepReport& failure = own.summary.failure;
   return nb::make_tuple(nb::module_::import_("sinew.running").attr("_run_again"),
-                        nb::make_tuple(own.model, own.summary.end, own.summary.warnings, own.summary.threads,
+                        nb::make_tuple(own.model, own.summary.end, reduced(own.summary.warnings), own.summary.threads,
                                        nb::make_tuple(static_cast<int>(failure.status), failure.detail, failure.newton,
                                                       failure.halvings, failure.residual, failure.violation),
                                        steps));
 }
 
-std::shared_ptr<Run> restored(ModelPointer model, const std::string& end, const std::vector<std::string>& warnings,
-                              int threads, const nb::typed<nb::tuple, nb::object, nb::ellipsis>& failure,
+std::shared_ptr<Run> restored(ModelPointer model, const std::string& end,
+                              const nb::typed<nb::list, nb::object>& warnings, int threads,
+                              const nb::typed<nb::tuple, nb::object, nb::ellipsis>& failure,
                               const nb::typed<nb::list, nb::object>& steps) {
   auto all = std::make_shared<Run>(Run{model, {}, {}});
   StepReport& failed = all->summary.failure;
@@ -172,13 +192,14 @@ std::shared_ptr<Run> restored(ModelPointer model, const std::string& end, const 
   failed.residual = nb::cast<double>(failure[4]);
   failed.violation = nb::cast<double>(failure[5]);
   all->summary.end = end;
-  all->summary.warnings = warnings;
+  all->summary.warnings = restored_warnings(warnings);
   all->summary.threads = threads;
   const std::size_t signals = signal_names(model->model).size();
   for (const nb::handle own : steps) {
     all->steps.push_back({nb::cast<double>(own[0]), nb::cast<std::string>(own[1]), nb::cast<std::string>(own[2]),
                           nb::cast<std::uint32_t>(own[3]), nb::cast<double>(own[4]), nb::cast<double>(own[5]),
-                          nb::cast<std::vector<double>>(own[6]), nb::cast<std::vector<double>>(own[7])});
+                          nb::cast<std::vector<double>>(own[6]), nb::cast<std::vector<double>>(own[7]),
+                          restored_warnings(own[8])});
     if (all->steps.back().signals.size() != signals) throw nb::value_error("a run of another model");
   }
   if (all->steps.empty()) throw nb::value_error("a run has at least its start");
@@ -197,7 +218,9 @@ void save(Run& own, const std::filesystem::path& folder, bool replace) {
 class Recorder {
  public:
   Recorder(const LiveState& start, const std::optional<std::filesystem::path>& folder, bool replace)
-      : run_(std::make_shared<Run>(Run{start.model, runs::begin_summary(start.model->model, 1), {}})), folder_(folder) {
+      : run_(std::make_shared<Run>(Run{start.model, runs::begin_summary(start.model->model, 1), {}})),
+        watch_(start.model->model),
+        folder_(folder) {
     if (folder_) writer_ = runs::begin_recording(start.model->loaded, start.state(), *folder_, replace);
     keep(start.state(), StepReport{});
   }
@@ -208,8 +231,10 @@ class Recorder {
       run_->summary.failure = report;
       return;
     }
-    runs::add(run_->model->model, state.state(), report, run_->summary);
-    keep(state.state(), report);
+    StepReport own = report;
+    watch_.look(state.state(), own);
+    runs::add(own, run_->summary);
+    keep(state.state(), own);
     if (writer_) writer_->append(run_->steps.back());
   }
 
@@ -228,6 +253,7 @@ class Recorder {
     run_->steps.push_back(runs::recorded(run_->model->model, state, report));
   }
   std::shared_ptr<Run> run_;
+  runs::RunWatch watch_;
   std::optional<std::filesystem::path> folder_;
   std::optional<io::RecordingWriter> writer_;
 };
@@ -351,7 +377,8 @@ void bind_runs(nb::module_& module) {
           },
           "What failed in it, and what to try.")
       .def_prop_ro(
-          "warnings", [](const Run& own) { return own.summary.warnings; }, "What a person should know of it.")
+          "warnings", [](const Run& own) { return runs::all_warnings(own.model->model, own.summary, own.steps); },
+          "What a user should know of it: of the scene, of all its steps and of how it ended.")
       .def("save", &save, "folder"_a, nb::kw_only(), "replace"_a = false,
            nb::sig("def save(self, folder: str | os.PathLike[str], *, replace: bool = False) -> None"),
            "Writes a results folder, as `sinew run` does: recording, tables, ParaView files, picture, report.")

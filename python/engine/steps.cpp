@@ -188,12 +188,15 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
     const Told by{grid ? &told : nullptr, model.effectors.empty() ? nullptr : &goal, forward};
     const long before = state.grid;
     StageTimes times;
+    std::vector<Warning> warnings;  // of all parts of a halved step
     do {
       static_cast<StepReport&>(report) =
           advance(model, *workspace, state, {full ? Evaluation::full : Evaluation::motion}, by);
       times += report.times;
+      merge(report.warnings, warnings);
     } while (grid && accepted(report.status) && state.grid == before);
     report.times = times;
+    report.warnings = std::move(warnings);
     if (!model.effectors.empty() && !forward) report.targets = describe(model, report.aim);
   }
   live.command = std::move(last);
@@ -210,6 +213,19 @@ nb::dict times_of(const FullReport& own) {
 }  // namespace
 
 void bind_steps(nb::module_& module) {
+  nb::class_<Warning>(module, "RunWarning", doc::Warning)
+      .def_ro("code", &Warning::code, doc::Warning_code)
+      .def_ro("where", &Warning::where, doc::Warning_where)
+      .def_ro("message", &Warning::message, doc::Warning_message)
+      .def_ro("remedy", &Warning::remedy, doc::Warning_remedy)
+      .def_ro("time", &Warning::time, doc::Warning_time)
+      .def_ro("value", &Warning::value, doc::Warning_value)
+      .def_ro("limit", &Warning::limit, doc::Warning_limit)
+      .def_ro("unit", &Warning::unit, "Of value and limit.")
+      .def_ro("steps", &Warning::steps, doc::Warning_steps)
+      .def("__str__", [](const Warning& own) { return to_string(own); })
+      .def("__repr__",
+           [](const Warning& own) { return "<sinew.RunWarning " + own.code + ": " + to_string(own) + ">"; });
   nb::class_<FullReport>(module, "StepReport", doc::StepReport)
       .def_prop_ro(
           "status", [](const FullReport& own) { return std::string(to_string(own.status)); },
@@ -227,6 +243,9 @@ void bind_steps(nb::module_& module) {
       .def_ro("rotated", &FullReport::rotated, doc::StepReport_rotated)
       .def_ro("unstable", &FullReport::unstable, doc::StepReport_unstable)
       .def_ro("redundant", &FullReport::redundant, doc::StepReport_redundant)
+      .def_ro("at_floor", &FullReport::at_floor, doc::StepReport_at_floor)
+      .def_ro("judged", &FullReport::judged, doc::StepReport_judged)
+      .def_ro("warnings", &FullReport::warnings, doc::StepReport_warnings)
       .def_prop_ro(
           "contacts", [](const FullReport& own) { return own.contact.contacts; }, doc::ContactReport_contacts)
       .def_prop_ro(

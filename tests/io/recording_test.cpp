@@ -128,14 +128,14 @@ TEST_F(RecordingFile, has_the_documented_bytes) {
                                             .signals = {},
                                             .state = {0.5}});
   const std::string bytes = bytes_of(path_);
-  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 8 + 4 + 8 + 8 + 8 + 8));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x05\0\0\0\0\0\0\0", 16));
+  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 8 + 4 + 8 + 8 + 8 + 8 + 8));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x06\0\0\0\0\0\0\0", 16));
   EXPECT_EQ(bytes.substr(24, 8), std::string("\x39\0\0\0\0\0\0\0", 8));                 // payload of the header
   EXPECT_EQ(bytes.substr(32, 9), std::string("\x01\0\0\0\0\0\0\0v", 9));                // program_version
-  EXPECT_EQ(bytes.substr(bytes.size() - 62, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
-  EXPECT_EQ(bytes.substr(bytes.size() - 54, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
-  EXPECT_EQ(bytes.substr(bytes.size() - 36, 4), std::string("\x03\0\0\0", 4));
-  EXPECT_EQ(bytes.substr(bytes.size() - 8), std::string("\0\0\0\0\0\0\xe0\x3f", 8));
+  EXPECT_EQ(bytes.substr(bytes.size() - 70, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
+  EXPECT_EQ(bytes.substr(bytes.size() - 62, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
+  EXPECT_EQ(bytes.substr(bytes.size() - 44, 4), std::string("\x03\0\0\0", 4));
+  EXPECT_EQ(bytes.substr(bytes.size() - 16, 8), std::string("\0\0\0\0\0\0\xe0\x3f", 8));
 }
 
 TEST_F(RecordingFile, equal_runs_give_equal_bytes) {
@@ -301,10 +301,10 @@ TEST_F(RecordingFile, refuses_what_is_no_recording) {
   EXPECT_THAT(message_of("time,status,newton\n0,converged,1\n"), HasSubstr("is not a Sinew recording"));
   write(path_, 1);
   std::string newer = bytes_of(path_);
-  newer[8] = 6;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 6, and this program reads format 5"));
-  newer[8] = 4;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 4, and this program reads format 5"));
+  newer[8] = 7;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 7, and this program reads format 6"));
+  newer[8] = 5;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 5, and this program reads format 6"));
   newer[8] = 0;
   EXPECT_THAT(message_of(newer), HasSubstr("damaged"));
   EXPECT_THROW(read_recording(folder_), InputError);

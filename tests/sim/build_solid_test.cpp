@@ -94,7 +94,7 @@ TEST(BuildSolid, warns_of_holes_where_the_file_has_other_cells) {
   mesh.ignored = {{"line", 4}, {"quadratic hexahedron", 2}, {"quadrilateral", 9}, {"wedge", 7}};
   const Model model = build(scene, [&](const auto&) { return mesh; });
   ASSERT_EQ(model.warnings.size(), 1u);
-  EXPECT_THAT(model.warnings[0], HasSubstr("2 of kind quadratic hexahedron, 7 of kind wedge;"));
+  EXPECT_THAT(to_string(model.warnings[0]), HasSubstr("2 of kind quadratic hexahedron, 7 of kind wedge;"));
   mesh.ignored = {{"line", 4}, {"quadrilateral", 9}, {"polygon", 1}};
   EXPECT_TRUE(build(scene, [&](const auto&) { return mesh; }).warnings.empty());
 }
@@ -208,7 +208,7 @@ TEST(Held, a_body_in_motion_or_coupled_only_warns) {
   scene.analysis = Analysis::dynamic;
   const Model flies = build_block(scene);
   ASSERT_EQ(flies.warnings.size(), 1u);
-  EXPECT_EQ(flies.warnings[0],
+  EXPECT_EQ(to_string(flies.warnings[0]),
             "solids.solid: what is fixed and its springs leave it free to turn about [1, 0, 0] through [1, 0, 0] m");
   scene.analysis = Analysis::quasi_static;
   Rod rod;
@@ -222,7 +222,7 @@ TEST(Held, a_body_in_motion_or_coupled_only_warns) {
   scene.couplings.emplace_back(tie);
   const Model tied = build_block(scene);
   ASSERT_EQ(tied.warnings.size(), 1u);
-  EXPECT_THAT(tied.warnings[0], testing::EndsWith("but for its couplings"));
+  EXPECT_THAT(to_string(tied.warnings[0]), testing::EndsWith("but for its couplings"));
 }
 
 /// A block on springs alone, in a frame that moves.

@@ -87,7 +87,7 @@ TEST(ContactForces, ActionIsReaction) {
     const StepContext context = make_context(model, start, command_at(model, 0.01), 0.01);
     State iterate = start;
     ContactRoom room;
-    find_contacts(context, iterate, room);
+    find_contacts(context, iterate, room, alarm_distance(context));
     double largest = 0.0;
     for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
       evaluate_contacts(context, iterate, room);

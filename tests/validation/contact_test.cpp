@@ -125,7 +125,8 @@ TEST(Contact, WhatStartsInTheGroundIsLiftedGently) {
   scene.bodies.emplace_back("box", box_of(50 * mm, 0.1, Vec3(0, 0, 25 * mm - depth)));
   const Model model = build(scene, no_mesh);
   ASSERT_EQ(model.warnings.size(), 1U);
-  EXPECT_EQ(model.warnings[0].find("contact: floor and box overlap by 5 mm"), 0U) << model.warnings[0];
+  EXPECT_EQ(to_string(model.warnings[0]).find("contact: floor and box overlap by 5 mm"), 0U)
+      << to_string(model.warnings[0]);
   double fastest = 0.0, highest = -INFINITY;
   State last;
   run(model, initial_state(model), [&](const State& state, const StepReport&) {

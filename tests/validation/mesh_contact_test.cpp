@@ -112,7 +112,8 @@ TEST(MeshContact, WarnsOfMillimetres) {
     const Model model = build(scene, reader(box_surface(Vec3(20, 30, 40), Vec3(0, 0, 20))));
     ASSERT_EQ(model.warnings.size(), scale == 1.0 ? 1U : 0U);
     if (scale == 1.0)
-      EXPECT_EQ(model.warnings[0].find("bodies.brick.mesh.scale: the mesh is 53.8"), 0U) << model.warnings[0];
+      EXPECT_EQ(to_string(model.warnings[0]).find("bodies.brick.mesh.scale: the mesh is 53.8"), 0U)
+          << to_string(model.warnings[0]);
   }
 }
 
@@ -285,7 +286,7 @@ TEST(MeshContact, OverlapsAtTheStartAreToldAndMended) {
     const Model model = build(scene, reader(meshes));
     ASSERT_EQ(model.warnings.size(), 1U);
     const std::string expected = "contact: slab and cube overlap by " + std::to_string(std::lround(1e3 * deep)) + " mm";
-    EXPECT_EQ(model.warnings[0].substr(0, expected.size()), expected);
+    EXPECT_EQ(to_string(model.warnings[0]).substr(0, expected.size()), expected);
     double gained = 0.0;
     EXPECT_NEAR(end_of(model, &gained).bodies[0].p.z(), 120 * mm, 1e-5);
   }
@@ -299,7 +300,7 @@ TEST(MeshContact, OverlapsAtTheStartAreToldAndMended) {
   ring.pose.translate = Vec3(0, 0, 200 * mm);
   scene.bodies.emplace_back("ring", ring);
   const Model model = build(scene, reader(named({{"ring.stl", ring_surface(30 * mm, 5 * mm, 32, 12)}})));
-  EXPECT_TRUE(model.warnings.empty()) << model.warnings[0];
+  EXPECT_TRUE(model.warnings.empty()) << to_string(model.warnings[0]);
   const State end = end_of(model);
   EXPECT_NEAR(end.bodies[0].p.z(), 115 * mm, 0.3 * mm);
 }

@@ -131,9 +131,10 @@ TEST(MixedMesh, says_that_it_raised_the_order) {
   const solid::Mesh linear = block_mesh(4, 1, 1, kSize), mixed = half_quadratic(linear);
   const Model raised = build_of(scene, mixed);
   ASSERT_EQ(raised.warnings.size(), 1u);
-  EXPECT_NE(raised.warnings[0].find("solids.solid.mesh: "), std::string::npos);
-  EXPECT_NE(raised.warnings[0].find(std::to_string(solid::meeting_orders(mixed.cells)) + " 4-node"), std::string::npos);
-  EXPECT_NE(raised.warnings[0].find("(12)"), std::string::npos) << raised.warnings[0];
+  EXPECT_NE(to_string(raised.warnings[0]).find("solids.solid.mesh: "), std::string::npos);
+  EXPECT_NE(to_string(raised.warnings[0]).find(std::to_string(solid::meeting_orders(mixed.cells)) + " 4-node"),
+            std::string::npos);
+  EXPECT_NE(to_string(raised.warnings[0]).find("(12)"), std::string::npos) << to_string(raised.warnings[0]);
   EXPECT_EQ(kinds(build_of(scene, linear)), (std::map<Kind, int>{{Kind::tet4, 24}}));
   scene.solids[0].second.order = 2;
   for (const solid::Mesh& mesh : {linear, mixed}) {
@@ -308,7 +309,7 @@ TEST(RaisedMesh, does_not_lock) {
   const solid::Mesh mesh = block_mesh(2, 1, 1, kSize);
   const Model model = build_of(scene, mesh);
   ASSERT_EQ(model.warnings.size(), 1u);
-  EXPECT_NE(model.warnings[0].find("set `order: 2`"), std::string::npos) << model.warnings[0];
+  EXPECT_NE(to_string(model.warnings[0]).find("set `order: 2`"), std::string::npos) << to_string(model.warnings[0]);
   scene.solids[0].second.order = 2;
   EXPECT_TRUE(build_of(scene, mesh).warnings.empty());
 }

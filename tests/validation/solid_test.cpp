@@ -126,7 +126,7 @@ TEST(Solid, linear_tetrahedra_lock_and_say_so) {
   hold(scene, plane(Vec3::Zero(), Vec3::UnitX()));
   const Model model = build(scene, [](const auto&) { return block_mesh(2, 1, 1, Vec3::Ones()); });
   ASSERT_EQ(model.warnings.size(), 1u);
-  EXPECT_NE(model.warnings[0].find("10-node tetrahedra"), std::string::npos) << model.warnings[0];
+  EXPECT_NE(to_string(model.warnings[0]).find("10-node tetrahedra"), std::string::npos) << to_string(model.warnings[0]);
 }
 
 const solid::OgdenTerm kRubber[] = {{6.3e5, 1.3}, {1.2e3, 5.0}, {-1e4, -2.0}};

@@ -197,7 +197,7 @@ TEST(Tie, that_nothing_in_the_rod_can_follow_warns) {
   add_tie(scene, {true, false, false});
   const Model locked = build(scene, read_block);
   ASSERT_EQ(locked.warnings.size(), 1u);
-  EXPECT_NE(locked.warnings[0].find("add `elongation`"), std::string::npos) << locked.warnings[0];
+  EXPECT_NE(to_string(locked.warnings[0]).find("add `elongation`"), std::string::npos) << to_string(locked.warnings[0]);
   scene.rods[0].second.strains = kExtensible;
   EXPECT_TRUE(build(scene, read_block).warnings.empty());
   scene.rods[0].second.strains = {Strain::bending_z};

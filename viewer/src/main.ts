@@ -165,7 +165,10 @@ function showStatus(): void {
   if (head.step_ms !== undefined) parts.push([`step ${head.step_ms.toFixed(2)} ms`, "step"]);
   parts.push([`${head.newton} Newton`, "newton"]);
   if (head.contacts) parts.push([`${head.contacts} contacts`, "contacts"]);
+  const warnings = head.warnings ?? [];
+  parts.push(["●", head.trouble ? "dot stopped" : warnings.length > 0 ? "dot warned" : "dot sound"]);
   parts.push([head.status, "state"]);
+  for (const text of warnings) parts.push([text, "warning"]);
   if (head.halvings) parts.push([`step halved ${head.halvings}×`, "warning"]);
   if (head.targets.startsWith("reached")) parts.push([head.targets, "fine"]);
   else if (head.targets) parts.push([`${farOff()}${head.targets.replaceAll("actuators.", "")}`, "warning"]);

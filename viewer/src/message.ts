@@ -60,6 +60,7 @@ export interface FrameHead {
   step_ms?: number;
   frame_ms?: number;
   realtime?: number;
+  warnings?: string[]; // of this step
   trouble?: string;
   mine?: Record<string, number>;
 }

@@ -15,17 +15,20 @@ Vec3 into(const Pose& pose, const Vec3& x) { return pose.R.transpose() * (x - po
 Simplex moved(const Pose& pose, Simplex own) {
   for (int i = 0; i < own.corners(); ++i) own.x[i] = pose * own.x[i];
   own.normal = pose.R * own.normal;
+  own.rim = pose.R * own.rim;
   return own;
 }
 
-/// The points of a cylinder's rims that are lowest along -n, and those across.
+/// A cylinder's rims, each with its lowest point along -n as it rolls, and the points across and opposite, on which it
+/// stands.
 void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& points) {
   Vec3 down(-n.x(), -n.y(), 0.0);
   down = down.norm() > 1e-9 ? Vec3(down.normalized()) : Vec3(Vec3::UnitX());
   const Vec3 across(-down.y(), down.x(), 0.0);
   for (const double end : {-0.5, 0.5}) {
     const Vec3 cap(0.0, 0.0, end * cylinder.length);
-    for (const Vec3& direction : {down, across, Vec3(-down), Vec3(-across)})
+    points.push_back(circle_at(cap, Vec3::UnitZ(), cylinder.radius));
+    for (const Vec3& direction : {across, Vec3(-down), Vec3(-across)})
       points.push_back(point_at(cap + cylinder.radius * direction, 0.0));
   }
 }
@@ -37,6 +40,52 @@ std::uint64_t key(Kind kind, std::size_t i, std::size_t j = 0) {
 }
 
 bool round(const Shape& shape) { return std::holds_alternative<Ball>(shape) || std::holds_alternative<Capsule>(shape); }
+
+/// The part of a segment from p to q that is in a polyhedron: none where `from` is not before `to`.
+struct Stretch {
+  double from = 0.0, to = 1.0;
+};
+Stretch inner_part(const Polyhedron& own, const Vec3& p, const Vec3& q) {
+  Stretch part;
+  for (std::size_t f = 0; f < own.faces.size(); ++f) {
+    const Vec3 &n = own.normals[f], &x = own.corners[own.faces[f][0]];
+    const double a = n.dot(p - x), b = n.dot(q - x);
+    if (a > 0.0 && b > 0.0) return {1.0, 0.0};
+    if (a > 0.0) part.from = std::max(part.from, a / (a - b));
+    if (b > 0.0) part.to = std::min(part.to, a / (a - b));
+  }
+  return part;
+}
+
+bool passes(const Polyhedron& own, const Vec3& p, const Vec3& q) {
+  const Stretch part = inner_part(own, p, q);
+  return part.from < part.to;
+}
+
+/// The direction in a face's plane, across one of its edges, into the face.
+Vec3 into_face(const Polyhedron& own, int face, std::size_t edge) {
+  const Vec3 &x = own.corners[own.edges[edge][0]], &y = own.corners[own.edges[edge][1]];
+  Vec3 middle = Vec3::Zero();
+  for (const int corner : own.faces[face]) middle += own.corners[corner];
+  const Vec3 across = own.normals[face].cross(y - x).normalized();
+  return across.dot(middle / static_cast<double>(own.faces[face].size()) - x) < 0.0 ? Vec3(-across) : across;
+}
+
+/// Whether a direction out of an edge lies between the normals of its two faces.
+bool between_faces(const Polyhedron& own, std::size_t edge, const Vec3& d) {
+  const double some = 1e-9 * d.norm();
+  return d.dot(into_face(own, own.sides[edge][0], edge)) <= some &&
+         d.dot(into_face(own, own.sides[edge][1], edge)) <= some;
+}
+
+/// Whether a direction out of a corner lies between the normals of its faces: against all edges that leave it.
+bool out_of_corner(const Polyhedron& own, int corner, const Vec3& d) {
+  return std::all_of(own.edges.begin(), own.edges.end(), [&](const std::array<int, 2>& edge) {
+    if (edge[0] != corner && edge[1] != corner) return true;
+    const Vec3 away = own.corners[edge[0] == corner ? edge[1] : edge[0]] - own.corners[corner];
+    return d.dot(away) <= 1e-9 * d.norm() * away.norm();
+  });
+}
 
 /// One shape while it meets another one.
 class Meet {
@@ -64,48 +113,117 @@ class Meet {
     }
     const Capsule& capsule = std::get<Capsule>(a);
     const Vec3 end(0.0, 0.0, 0.5 * capsule.length);
-    points({point_at(-end, capsule.radius), point_at(end, capsule.radius)}, at, b, there, swapped);
     const Simplex axis = segment_at(-end, end, Vec3::Zero(), capsule.radius);
+    const Vec3 from = into(there, at * Vec3(-end)), to = into(there, at * end);
+    if (const Convex* convex = std::get_if<Convex>(&b); convex && passes(convex->surface, from, to))
+      return axis_inside(axis, at, convex->surface, there, swapped);
+    const Cylinder* const barrel = std::get_if<Cylinder>(&b);
+    const Polyhedron sides = barrel ? prism(*barrel) : Polyhedron{};
+    if (barrel && passes(sides, from, to)) return axis_inside(axis, at, sides, there, swapped);
+    points({point_at(-end, capsule.radius), point_at(end, capsule.radius)}, at, b, there, swapped);
     if (const Convex* convex = std::get_if<Convex>(&b)) {
-      edges(axis, at, convex->surface, there, swapped, [](std::size_t) { return true; });
+      axis_outside(axis, at, convex->surface, there, swapped, [](std::size_t) { return true; });
     } else if (const Capsule* other = std::get_if<Capsule>(&b)) {
       const Vec3 tip(0.0, 0.0, 0.5 * other->length);
       add(axis, at, segment_at(-tip, tip, Vec3::Zero(), other->radius), there, key(Kind::axis, 0), swapped);
       points({point_at(-tip, other->radius), point_at(tip, other->radius)}, there, a, at, !swapped);
-    } else if (const Cylinder* barrel = std::get_if<Cylinder>(&b)) {
+    } else if (barrel) {
       const Vec3 tip(0.0, 0.0, 0.5 * barrel->length);
       const Simplex side = segment_at(-tip, tip, Vec3::Zero(), barrel->radius);
       const Nearest there_is = nearest(moved(at, axis), moved(there, side));
-      if (there_is.b[1] > 0.0 && there_is.b[1] < 1.0) add(axis, at, side, there, key(Kind::axis, 0), swapped);
-      const Polyhedron sides = prism(*barrel);
-      edges(axis, at, sides, there, swapped, [&](std::size_t e) { return sides.sides[e][0] < 2; });  // the rims
+      const bool beside = there_is.b[1] > 0.0 && there_is.b[1] < 1.0;
+      if (beside) add(axis, at, side, there, key(Kind::axis, 0), swapped);
+      // The rims and, where no part of the barrel is nearest, the prism's sides next to them.
+      axis_outside(axis, at, sides, there, swapped, [&](std::size_t e) { return !beside || sides.sides[e][0] < 2; });
     }
   }
 
   void polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, const Pose& there);
 
  private:
-  /// The axis of a capsule across some edges of a polyhedron. Of edges that it has passed, as of those on the far side,
-  /// only the least overlaps count.
+  /// The axis of a capsule, in the polyhedron's axes, against its edges and corners. While it is outside, an edge meets
+  /// it where the line between their nearest points leaves the edge between its two faces, so that no other part of the
+  /// polyhedron is nearer there; likewise a corner. `wanted` chooses edges.
   template <class Wanted>
-  void edges(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped,
-             const Wanted& wanted) {
-    std::vector<std::pair<std::size_t, double>> crossed;
-    double least = -INFINITY;
-    for (std::size_t e = 0; e < own.edges.size(); ++e) {
-      if (!wanted(e)) continue;
-      const Nearest found = nearest(moved(at, axis), moved(there, edge_of(own, e)));
-      if (!(found.a[1] > 0.0 && found.a[1] < 1.0)) continue;  // ends are the business of the points
-      crossed.emplace_back(e, found.gap);
-      least = std::max(least, found.gap);
-    }
-    for (const auto& [e, gap] : crossed) {
-      if (gap >= std::min(least, 0.0) - alarm_) add(axis, at, edge_of(own, e), there, key(Kind::axis, 1 + e), swapped);
-    }
-  }
+  void axis_outside(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped,
+                    const Wanted& wanted);
+  /// Where the axis is in the polyhedron: along the direction in which they are apart soonest, a face's normal or
+  /// across axis and an edge.
+  void axis_inside(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped);
   double alarm_;
   std::vector<Meeting>& found_;
 };
+
+template <class Wanted>
+void Meet::axis_outside(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped,
+                        const Wanted& wanted) {
+  const Simplex local = segment_at(into(there, at * axis.x[0]), into(there, at * axis.x[1]), Vec3::Zero(), axis.radius);
+  std::vector<bool> corners(own.corners.size(), false);
+  for (std::size_t e = 0; e < own.edges.size(); ++e) {
+    if (!wanted(e)) continue;
+    for (const int corner : own.edges[e]) corners[corner] = true;
+    const Simplex edge = segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], Vec3::Zero(), 0.0);
+    const Nearest found = nearest(local, edge);
+    const auto within = [](double t) { return t > 0.0 && t < 1.0; };
+    if (found.gap >= alarm_ || !within(found.a[1]) || !within(found.b[1])) continue;
+    if (between_faces(own, e, found.normal)) add(axis, at, edge_of(own, e), there, key(Kind::axis, 1 + e), swapped);
+  }
+  for (std::size_t c = 0; c < own.corners.size(); ++c) {
+    if (!corners[c]) continue;
+    const Nearest found = nearest(point_at(own.corners[c], 0.0), local);
+    if (found.gap >= alarm_ || !(found.b[1] > 0.0 && found.b[1] < 1.0)) continue;
+    if (out_of_corner(own, static_cast<int>(c), -found.normal))
+      add(point_at(own.corners[c], 0.0), there, axis, at, key(Kind::axis, 1 + own.edges.size() + c), !swapped);
+  }
+}
+
+void Meet::axis_inside(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped) {
+  const Vec3 p = into(there, at * axis.x[0]), q = into(there, at * axis.x[1]);
+  double of_faces = -INFINITY, of_edges = -INFINITY, size = 0.0;
+  std::size_t face = 0, edge = 0;
+  for (std::size_t f = 0; f < own.faces.size(); ++f) {
+    const Vec3 &n = own.normals[f], &x = own.corners[own.faces[f][0]];
+    const double apart = std::min(n.dot(p - x), n.dot(q - x));
+    if (apart <= of_faces) continue;
+    of_faces = apart;
+    face = f;
+  }
+  for (std::size_t e = 0; e < own.edges.size(); ++e) {
+    const Vec3& x = own.corners[own.edges[e][0]];
+    const Vec3 along = own.corners[own.edges[e][1]] - x;
+    size = std::max(size, along.norm());
+    Vec3 across = (q - p).cross(along);
+    if (across.norm() < 1e-6 * (q - p).norm() * along.norm()) continue;
+    across.normalize();
+    if (across.dot(own.normals[own.sides[e][0]] + own.normals[own.sides[e][1]]) < 0.0) across = -across;
+    const double apart = across.dot(p - x);
+    if (apart <= of_edges || !between_faces(own, e, across)) continue;
+    of_edges = apart;
+    edge = e;
+  }
+  // Faces where they say about the same: their patch does not flicker.
+  if (of_edges > of_faces + 1e-3 * size) {
+    add(axis, at, edge_of(own, edge), there, key(Kind::axis, 1 + edge), swapped);
+    return;
+  }
+  // What of the axis is over the face, its two ends.
+  const Vec3 &n = own.normals[face], &x = own.corners[own.faces[face][0]];
+  Stretch over;
+  const std::vector<int>& around = own.faces[face];
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const Vec3 &from = own.corners[around[i]], &to = own.corners[around[(i + 1) % around.size()]];
+    const Vec3 outward = (to - from).cross(n);
+    const double a = outward.dot(p - from), b = outward.dot(q - from);
+    if (a > 0.0 && b > 0.0) over.to = -1.0;
+    if (a > 0.0 && b <= 0.0) over.from = std::max(over.from, a / (a - b));
+    if (b > 0.0 && a <= 0.0) over.to = std::min(over.to, a / (a - b));
+  }
+  if (over.from > over.to) over = inner_part(own, p, q);
+  std::size_t number = 0;
+  for (const double t : {over.from, over.to})
+    add(point_at(axis.x[0] + t * (axis.x[1] - axis.x[0]), axis.radius), at, plane_at(x, n), there,
+        key(swapped ? Kind::face_of_first : Kind::face_of_second, face, number++), swapped);
+}
 
 /// Largest distance of Q from the plane of a face of P, over all faces.
 struct FaceAxis {
@@ -164,12 +282,15 @@ void clip(std::vector<Vec3>& polygon, const Vec3& x, const Vec3& outward) {
   polygon = std::move(kept);
 }
 
-/// At most eight of many corners: the farthest along as many directions in the plane.
+/// At most nine of many corners: the lowest, and the farthest along eight directions in the plane.
 void thin(std::vector<Vec3>& polygon, const Vec3& n) {
   constexpr std::size_t kMost = 8;
-  if (polygon.size() <= kMost) return;
+  if (polygon.size() <= kMost + 1) return;
   const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
-  std::vector<Vec3> kept;
+  const auto lowest = std::min_element(polygon.begin(), polygon.end(),
+                                       [&](const Vec3& a, const Vec3& b) { return n.dot(a) < n.dot(b); });
+  std::vector<Vec3> kept = {*lowest};
+  polygon.erase(lowest);
   for (std::size_t k = 0; k < kMost; ++k) {
     const double angle = 2.0 * M_PI * static_cast<double>(k) / kMost;
     const Vec3 way = std::cos(angle) * x + std::sin(angle) * y;
@@ -197,10 +318,15 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
   for (const Vec3& corner : P.corners) size = std::max(size, corner.norm());
   // Faces where they say about the same: their patch does not flicker.
   const double clearly = 1e-3 * size;
-  if (edges.separation > std::max(of_P.separation, of_Q.separation) + clearly) {
+  const auto add_edges = [&] {
     found_.push_back({edge_of(Q, edges.of_Q), edge_of(P, edges.of_P), key(Kind::edges, edges.of_P, edges.of_Q), true});
-    return;
-  }
+  };
+  // Two edges that overlap meet between their ends; where they do not, they are not what is nearest.
+  const bool edges_meet =
+      std::isfinite(edges.separation) &&
+      (edges.separation > 0.0 || nearest(moved(there, edge_of(Q, edges.of_Q)), moved(at, edge_of(P, edges.of_P))).gap <
+                                     edges.separation + 1e-9 * size);
+  if (edges_meet && edges.separation > std::max(of_P.separation, of_Q.separation) + clearly) return add_edges();
   const bool on_Q = of_Q.separation > of_P.separation + clearly;
   const Polyhedron &reference = on_Q ? Q : P, &incident = on_Q ? P : Q;
   const std::vector<Vec3>& corners = on_Q ? P_in_Q : Q_in_P;
@@ -220,6 +346,13 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
     clip(polygon, from, (to - from).cross(n));
   }
   std::erase_if(polygon, [&](const Vec3& p) { return n.dot(p - x) >= alarm_; });
+  const bool overlap = std::max({of_P.separation, of_Q.separation, edges.separation}) <= 0.0;
+  const bool above = std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& p) { return n.dot(p - x) > 0.0; });
+  if (polygon.empty() || (overlap && above)) {  // beside the face: two edges, or else the corner that is deepest
+    if (edges_meet) return add_edges();
+    polygon.push_back(*std::min_element(corners.begin(), corners.end(),
+                                        [&](const Vec3& a, const Vec3& b) { return n.dot(a) < n.dot(b); }));
+  }
   thin(polygon, n);
   for (std::size_t i = 0; i < polygon.size(); ++i)
     found_.push_back({point_at(back * polygon[i], 0.0), plane_at(x, n),

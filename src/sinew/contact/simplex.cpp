@@ -31,6 +31,21 @@ Simplex plane_at(const Vec3& x, const Vec3& normal) {
   return own;
 }
 
+Simplex circle_at(const Vec3& middle, const Vec3& axis, double radius) {
+  Simplex own = point_at(middle, 0.0);
+  own.rim = radius * axis;
+  return own;
+}
+
+Vec3 lowest_on_rim(const Simplex& own, const Vec3& normal) {
+  const double radius = own.rim.norm();
+  if (radius == 0.0) return Vec3::Zero();
+  const Vec3 axis = own.rim / radius;
+  const Vec3 down = axis * axis.dot(normal) - normal;
+  const double length = down.norm();
+  return radius * (length > 1e-9 ? Vec3(down / length) : axis.unitOrthogonal());
+}
+
 std::array<double, 2> on_segment(const Vec3& p, const Vec3& x, const Vec3& y) {
   const Vec3 d = y - x;
   const double length = d.squaredNorm();
@@ -152,7 +167,7 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
       case plane:
         found.b[0] = 1.0;
         found.normal = b.normal;
-        found.gap = b.normal.dot(p - b.x[0]);
+        found.gap = b.normal.dot(p + lowest_on_rim(a, b.normal) - b.x[0]);
         break;
     }
   } else {
@@ -201,7 +216,8 @@ Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
     const Vec3 both = across(a, b).normalized();
     if (!both.isZero()) found.normal = both.dot(kept.normal) < 0.0 ? Vec3(-both) : both;
   }
-  found.gap = found.normal.dot(point_of(a, found.a) - point_of(b, found.b)) - a.radius - b.radius;
+  found.gap = found.normal.dot(point_of(a, found.a) + lowest_on_rim(a, found.normal) - point_of(b, found.b)) -
+              a.radius - b.radius;
   return found;
 }
 

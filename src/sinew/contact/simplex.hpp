@@ -18,6 +18,9 @@ struct Simplex {
   /// its rim, where it is that of a surface (zero: the triangle's own).
   Vec3 normal = Vec3::Zero();
   double radius = 0.0;  ///< [m]
+  /// Not zero: of a point, which is then the middle of a circle across this vector, as long as the circle's radius [m].
+  /// Its lowest point over a plane is meant, whichever that is as the circle turns.
+  Vec3 rim = Vec3::Zero();
   int corners() const { return kind == Kind::triangle ? 3 : kind == Kind::segment ? 2 : 1; }
 };
 
@@ -25,6 +28,11 @@ Simplex point_at(const Vec3& x, double radius);
 /// `outward` may be zero where it is not known.
 Simplex segment_at(const Vec3& from, const Vec3& to, const Vec3& outward, double radius);
 Simplex plane_at(const Vec3& x, const Vec3& normal);
+/// A circle around `axis` (of length 1), which meets planes alone.
+Simplex circle_at(const Vec3& middle, const Vec3& axis, double radius);
+
+/// From the middle of a circle to its lowest point over a plane with this normal; zero of what is none.
+Vec3 lowest_on_rim(const Simplex& own, const Vec3& normal);
 
 /// The points of two simplices that are nearest to each other, as weights of their corners, and the normal from b to a.
 struct Nearest {

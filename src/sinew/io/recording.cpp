@@ -87,6 +87,17 @@ class Decoder {
     for (std::uint64_t i = 0; i < count && fits_; ++i) values.push_back(string());
     return values;
   }
+  std::vector<Warning> warnings(std::uint64_t count) {
+    std::vector<Warning> values;
+    if (!fits(count, 64)) return values;  // (each takes 64 bytes at least)
+    for (std::uint64_t i = 0; i < count && fits_; ++i) {
+      Warning& own = values.emplace_back();
+      for (std::string* text : {&own.code, &own.where, &own.message, &own.remedy, &own.unit}) *text = string();
+      for (double* value : {&own.time, &own.value, &own.limit}) *value = f64();
+      own.steps = 1;
+    }
+    return values;
+  }
   bool whole() const { return fits_ && rest_.empty(); }  ///< all read, nothing missing, nothing left
 
  private:
@@ -144,6 +155,11 @@ std::string encode(const RecordedStep& step) {
   out.doubles(step.signals);
   out.u64(step.state.size());
   out.doubles(step.state);
+  out.u64(step.warnings.size());
+  for (const Warning& own : step.warnings) {
+    for (const std::string* text : {&own.code, &own.where, &own.message, &own.remedy, &own.unit}) out.string(*text);
+    for (const double value : {own.time, own.value, own.limit}) out.f64(value);
+  }
   return out.bytes();
 }
 
@@ -170,6 +186,7 @@ std::optional<RecordedStep> decode_step(std::string_view payload, const Recordin
   step.violation = in.f64();
   step.signals = in.doubles(header.signal_names.size());
   step.state = in.doubles(in.u64());
+  step.warnings = in.warnings(in.u64());
   if (!in.whole()) return std::nullopt;
   return step;
 }

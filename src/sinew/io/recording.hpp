@@ -16,7 +16,8 @@
 //   header  string program_version, scene_text, scene_name, scene_folder, inputs_hash
 //           u64 state_layout, u64 number of signals, string each signal's name
 //   step    f64 time, string status, string targets, u32 newton, f64 residual, f64 violation, f64 each signal,
-//           u64 number of state entries, f64 each
+//           u64 number of state entries, f64 each, u64 number of warnings, each of
+//   warning string code, string where, string message, string remedy, string unit, f64 time, f64 value, f64 limit
 //   string  u64 bytes, then the bytes
 //
 // Nothing in it depends on the clock or the machine, so equal runs give equal files. A program of another `version`
@@ -29,11 +30,12 @@
 #include <string>
 #include <vector>
 
+#include "sinew/error/warning.hpp"
 #include "sinew/io/append_file.hpp"
 
 namespace sinew::io {
 
-inline constexpr std::uint32_t kRecordingVersion = 5;
+inline constexpr std::uint32_t kRecordingVersion = 6;
 
 /// What was run. `inputs_hash` is the content hash of everything the scene reads (io/content_hash).
 struct RecordingHeader {
@@ -50,14 +52,15 @@ struct RecordingHeader {
 
 /// One accepted step; the first is the state at t = 0.
 struct RecordedStep {
-  double time = 0.0;            ///< [s]
-  std::string status;           ///< "converged", ...
-  std::string targets;          ///< of an inverse step: "reached", or what is in the way
-  std::uint32_t newton = 0;     ///< iterations
-  double residual = 0.0;        ///< [-] relative, as the step's report has it
-  double violation = 0.0;       ///< [m] largest of the constraints
-  std::vector<double> signals;  ///< one per name of the header
-  std::vector<double> state;    ///< as many as it has: contacts come and go
+  double time = 0.0;                   ///< [s]
+  std::string status;                  ///< "converged", ...
+  std::string targets;                 ///< of an inverse step: "reached", or what is in the way
+  std::uint32_t newton = 0;            ///< iterations
+  double residual = 0.0;               ///< [-] relative, as the step's report has it
+  double violation = 0.0;              ///< [m] largest of the constraints
+  std::vector<double> signals;         ///< one per name of the header
+  std::vector<double> state;           ///< as many as it has: contacts come and go
+  std::vector<Warning> warnings = {};  ///< of this step
 };
 
 struct Recording {

@@ -112,7 +112,7 @@ std::string Scenery::scene(const Json& more, const History& history) {
   message_.add("history.values", std::span<const double>(history.values));
   Json head = more;
   head["title"] = model.scene.title;
-  head["warnings"] = model.warnings;
+  head["warnings"] = to_strings(model.warnings);
   head["size"] = model.size;
   head["middle"] = numbers(model.middle);
   head["up"] =

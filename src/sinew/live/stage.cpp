@@ -188,9 +188,11 @@ bool Simulation::advance_once(const Wishes& wishes) {
   Lead next = led(goal_at(model_, time), wishes);
   const Told by{&told, model_.effectors.empty() ? nullptr : &next.goal, forward};
   const long before = state_.grid;
+  std::vector<Warning> warnings;  // of all parts of a halved step
   do {
     try {
       report_ = advance(model_, workspace_, state_, effort, by);
+      merge(report_.warnings, warnings);
     } catch (const std::exception& error) {  // memory, say: people still look on
       trouble_ = error.what();
       return false;
@@ -201,6 +203,7 @@ bool Simulation::advance_once(const Wishes& wishes) {
       return false;
     }
   } while (state_.grid == before);
+  report_.warnings = std::move(warnings);
   lead_ = std::move(next);
   trouble_.clear();
   return true;
@@ -215,6 +218,7 @@ void Simulation::publish(const Wishes& wishes) {
                {"targets", describe(model_, without_pace(report_.aim))},
                {"newton", report_.newton},
                {"halvings", report_.halvings},
+               {"warnings", to_strings(report_.warnings)},
                {"contacts", report_.contact.contacts},
                {"step_ms", 1e3 * step_seconds_},
                {"frame_ms", 1e3 * frame_seconds_},
@@ -346,6 +350,7 @@ std::string Replay::frame(long number, const Wishes& wishes) {
                          {"status", step.status},
                          {"targets", step.targets},
                          {"newton", step.newton},
+                         {"warnings", to_strings(step.warnings)},
                          {"contacts", contacts},
                          {"trouble", trouble},
                          {"playing", wishes.playing},

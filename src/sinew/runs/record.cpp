@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "sinew/error/input_error.hpp"
@@ -27,33 +28,6 @@ std::string end_word(RunEnd end) {
   return "";
 }
 
-/// What a person should know about the state a run ended in.
-void add_warnings(const Model& model, const State& state, std::vector<std::string>& warnings) {
-  for (std::size_t i = 0; i < model.couplings.size(); ++i) {
-    bool any = false, on = false;
-    for (std::size_t k = 0; k < model.points.size(); ++k) {
-      if (model.points[k].coupling != static_cast<int>(i)) continue;
-      any = true;
-      on |= state.points[k].on;
-    }
-    if (any && !on)
-      warnings.push_back(
-          fmt::format("couplings.{}: the rod has left the body, none of its points is on it any more", i));
-  }
-  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
-    if (model.actuators[i].tendon && state.actuators[i] < 0.0)
-      warnings.push_back(fmt::format("actuators.{}: the tendon pushes with {:.3g} N; a real one would go slack",
-                                     model.actuators[i].name, -state.actuators[i]));
-  }
-  for (const GeometricCableModel& cable : model.cables) {
-    const double tension = state.lambda[cable.length_row];
-    if (tension < 0.0) {
-      warnings.push_back(fmt::format("rods.{}: the geometric cable pushes with {:.3g} N; a real one would go slack",
-                                     cable.name, -tension));
-    }
-  }
-}
-
 /// How taut rods may be, T l^2 / (E I) over a section: of converged steps as far as tests/paper/taut_test.cpp goes; of
 /// linearised ones 400 and 485 are seen to go there, and 470 to fail (the example's finger, sections shorter than the
 /// ways from point to point).
@@ -61,7 +35,7 @@ constexpr double kTautConverged = 4000.0, kTautLinearised = 300.0;
 
 /// Rods so taut that this may be why a run stopped.
 void warn_of_taut_rods(const Model& model, const State& state, const StepReport& failure,
-                       std::vector<std::string>& warnings) {
+                       std::vector<Warning>& warnings) {
   const Analysis analysis = model.scene.analysis;
   if (analysis == Analysis::modal) return;  // (what a mode's picture does is no state)
   if (failure.status != Status::diverged && failure.status != Status::max_iterations) return;
@@ -70,12 +44,19 @@ void warn_of_taut_rods(const Model& model, const State& state, const StepReport&
   for (std::size_t n = 0; n < model.rods.size(); ++n) {
     const double taut = tautness(model, state, static_cast<int>(n));
     if (!(taut > most)) continue;
-    warnings.push_back(fmt::format(
-        "rods.{}: its tension outweighs its bending stiffness, T l^2 / (E I) = {:.0f} of a section of length l; {} may "
-        "fail above {:.0f}. Give it fewer sections than intervals between its points{}, or make it a `cable: "
-        "geometric`",
-        model.rods[n].name, taut, once ? "steps that are linearised (`newton: n`)" : "steps", most,
-        once ? ", leave `newton` out" : ""));
+    Warning own{.code = "rod_too_taut", .where = "rods." + model.rods[n].name};
+    own.message = fmt::format(
+        "its tension outweighs its bending stiffness, T l^2 / (E I) = {:.0f} of a section of length l; {} may fail "
+        "above "
+        "{:.0f}",
+        taut, once ? "steps that are linearised (`newton: n`)" : "steps", most);
+    own.remedy =
+        fmt::format("give it fewer sections than intervals between its points{}, or make it a `cable: geometric`",
+                    once ? ", leave `newton` out" : "");
+    own.time = state.time;
+    own.value = taut;
+    own.limit = most;
+    warnings.push_back(std::move(own));
   }
 }
 
@@ -83,22 +64,19 @@ void warn_of_taut_rods(const Model& model, const State& state, const StepReport&
 
 int usual_threads() { return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2); }
 
-std::vector<std::string> warnings_before(const Model& model) {
-  std::vector<std::string> warnings = model.warnings;
-  const auto add = [&](const Drive& drive, const std::string& what) {
-    if (std::holds_alternative<External>(drive)) warnings.push_back(what);
+std::vector<Warning> warnings_before(const Model& model) {
+  std::vector<Warning> warnings = model.warnings;
+  const auto add = [&](const auto& drive, const std::string& where) {
+    if (!std::holds_alternative<External>(drive)) return;
+    warnings.push_back({.code = "driven_from_outside",
+                        .where = where,
+                        .message = "it is driven from outside, which a run by itself does not; it stays where it is at "
+                                   "the start",
+                        .remedy = "give a value or a table, or step the scene from a program"});
   };
-  for (const ActuatorModel& own : model.actuators)
-    add(own.drive, "actuators." + own.name +
-                       ": driven from outside, which a run by itself does not; it stays where it is at the start");
-  for (const Target& own : model.scene.targets) {
-    if (std::holds_alternative<External>(own.at))
-      warnings.push_back("targets." + own.output +
-                         ": set from outside, which a run by itself does not; it stays where it is at the start");
-  }
-  for (const LoadModel& own : model.loads)
-    add(own.factor,
-        "loads." + own.name + ": set from outside, which a run by itself does not; it stays where it is at the start");
+  for (const ActuatorModel& own : model.actuators) add(own.drive, "actuators." + own.name);
+  for (const Target& own : model.scene.targets) add(own.at, "targets." + own.output);
+  for (const LoadModel& own : model.loads) add(own.factor, "loads." + own.name);
   return warnings;
 }
 
@@ -137,6 +115,32 @@ io::RecordingWriter begin_recording(const LoadedScene& loaded, const State& star
   return writer;
 }
 
+void RunWatch::look(const State& state, StepReport& report) {
+  const Analysis analysis = model_->scene.analysis;
+  if (surfaces_.idle() || analysis == Analysis::modal) return;
+  if (analysis != Analysis::statics) {  // the first state of each of the views' intervals, and the last
+    const double interval = view_interval(model_->scene), h = model_->scene.time.step;
+    const auto frame = [interval](double time) { return std::floor(time / interval + 1e-6); };
+    if (frame(state.time) == frame(std::max(0.0, state.time - h)) && !run_whole(model_->scene, state.time)) return;
+  }
+  for (const SurfaceOverlap& own : surfaces_.look(state)) {
+    const std::string &name = model_->solids[own.solid].name, &other = model_->solids[own.other].name;
+    Warning warning{.code = own.solid == own.other ? "solid_crosses_itself" : "solids_cross",
+                    .where = "solids." + name};
+    warning.message =
+        fmt::format("its surface passes through {} ({} pairs of triangles, near ({:.3g}, {:.3g}, {:.3g}) m)",
+                    own.solid == own.other ? "itself" : "that of solids." + other, own.crossings, own.where.x(),
+                    own.where.y(), own.where.z());
+    warning.remedy = fmt::format(
+        "stop it by a contact pair, `contact: {{pairs: [{{between: [{}, {}]}}]}}`, or move it less", name, other);
+    warning.time = state.time;
+    warning.value = own.crossings;
+    warning.limit = 0.0;
+    warning.steps = 1;
+    report.warnings.push_back(std::move(warning));
+  }
+}
+
 RunSummary begin_summary(const Model& model, int threads) {
   RunSummary summary;
   summary.warnings = warnings_before(model);
@@ -144,45 +148,36 @@ RunSummary begin_summary(const Model& model, int threads) {
   return summary;
 }
 
-void add(const Model& model, const State& state, const StepReport& report, RunSummary& summary) {
+void add(const StepReport& report, RunSummary& summary) {
   summary.times.push_back(report.times);
   summary.rotated += report.rotated ? 1 : 0;
   summary.redundant += report.redundant ? 1 : 0;
   summary.halved += report.halvings > 0 ? 1 : 0;
-  summary.unstable = report.unstable;
   add(report.contact, summary.contact);
-  if (model.scene.analysis != Analysis::modal)  // (what a mode's picture does is no state)
-    summary.most_inverted = std::max(summary.most_inverted, count_folded(model, state));
+  summary.floors += report.at_floor ? 1 : 0;
+  if (const Warning* inverted = find_warning(report.warnings, "elements_inverted"))
+    summary.most_inverted = std::max(summary.most_inverted, static_cast<int>(inverted->value));
 }
 
 void conclude(const Model& model, const State& last, RunEnd end, RunSummary& summary) {
   summary.end = end_word(end);
-  add_warnings(model, last, summary.warnings);
   if (end == RunEnd::stopped) warn_of_taut_rods(model, last, summary.failure, summary.warnings);
-  if (summary.unstable) {
-    summary.warnings.push_back(
-        "the last equilibrium is unstable, a real body would have buckled; a small side load or shorter steps show "
-        "where it goes");
-  }
-  if (summary.most_inverted > 0) {
-    summary.warnings.push_back(fmt::format(
-        "up to {} elements were flat or inside out ({} at the end): this is no state of a real body. Look at "
-        "volume_ratio in ParaView; load it less or slower, or give a finer mesh or another law",
-        summary.most_inverted, count_folded(model, last)));
-  }
 }
 
 Recorded record(const Model& model, const State& start, const std::function<void(io::RecordedStep)>& keep,
                 const OnStep& on_step, int threads) {
   Recorded all;
+  RunWatch watch(model);
   all.last = start;
   RunSummary& summary = all.summary;
   summary = begin_summary(model, threads);
   all.end = run(
       model, start,
       [&](const State& state, const StepReport& report) {
-        keep(recorded(model, state, report));
-        add(model, state, report, summary);
+        StepReport own = report;
+        watch.look(state, own);
+        keep(recorded(model, state, own));
+        add(own, summary);
         all.last = state;
         return on_step(state, report);
       },

@@ -9,6 +9,7 @@
 #include "sinew/runs/loaded_scene.hpp"
 #include "sinew/runs/results.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/surface_overlap.hpp"
 
 namespace sinew::runs {
 
@@ -17,7 +18,7 @@ int usual_threads();
 
 /// What a person should know before a run: what `build` found, and what is driven from outside, which a run by itself
 /// leaves as it is.
-std::vector<std::string> warnings_before(const Model& model);
+std::vector<Warning> warnings_before(const Model& model);
 
 /// What a recording begins with.
 io::RecordingHeader header_of(const LoadedScene& loaded);
@@ -27,9 +28,22 @@ io::RecordingHeader header_of(const LoadedScene& loaded);
 io::RecordingWriter begin_recording(const LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
                                     bool replace);
 
+/// Watches what takes too long to be looked at in every step: surfaces of solids that pass through themselves or each
+/// other, at the rate of the views.
+class RunWatch {
+ public:
+  explicit RunWatch(const Model& model) : model_(&model), surfaces_(model) {}
+  /// Adds warnings to the report of the step that ended there.
+  void look(const State& state, StepReport& report);
+
+ private:
+  const Model* model_;
+  SurfaceWatch surfaces_;
+};
+
 /// What is known of a run before, in each step that was accepted, and at its end.
 RunSummary begin_summary(const Model& model, int threads);
-void add(const Model& model, const State& state, const StepReport& report, RunSummary& summary);
+void add(const StepReport& report, RunSummary& summary);
 void conclude(const Model& model, const State& last, RunEnd end, RunSummary& summary);
 
 /// How a run ended.

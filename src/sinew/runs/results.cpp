@@ -25,14 +25,18 @@ using Json = nlohmann::ordered_json;
 std::filesystem::path recording_path(const std::filesystem::path& folder) { return folder / "run.sinew"; }
 
 io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report) {
+  std::string targets = describe(model, report.aim);
+  if (const Warning* off = find_warning(report.warnings, "linearisation_off"); off && targets.starts_with("reached"))
+    targets += fmt::format(" by a linearisation that is {:.2g} % off", 100.0 * off->value);
   return {state.time,
           std::string(to_string(report.status)),
-          describe(model, report.aim),
+          targets,
           static_cast<std::uint32_t>(report.newton),
           report.residual,
           report.violation,
           signal_values(model, state),
-          pack(state)};
+          pack(state),
+          report.warnings};
 }
 
 void add(const ContactReport& step, ContactReport& all) {
@@ -58,6 +62,20 @@ Json contact_json(const ContactReport& contact) {
            {{"complementarity", contact.left.complementarity},
             {"cone", contact.left.cone},
             {"dissipation", contact.left.dissipation}}}};
+}
+
+Json warnings_json(const std::vector<Warning>& warnings) {
+  Json all = Json::array();
+  for (const Warning& own : warnings) {
+    Json& one = all.emplace_back(
+        Json{{"code", own.code}, {"where", own.where}, {"message", own.message}, {"remedy", own.remedy}});
+    if (std::isfinite(own.time)) one["first_time_s"] = own.time;
+    if (own.steps > 0) one["steps"] = own.steps;
+    if (std::isfinite(own.value)) one["worst"] = own.value;
+    if (std::isfinite(own.limit)) one["limit"] = own.limit;
+    if (!own.unit.empty()) one["unit"] = own.unit;
+  }
+  return all;
 }
 
 /// Median and maximum of one stage over all steps [ms].
@@ -131,7 +149,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
   for (const auto& [name, hash] : loaded.inputs) report["inputs"].push_back({{"file", name}, {"xxh3_128", hash}});
   report["sizes"] = sizes_json(loaded.model);
   for (const Column& column : signal_columns(loaded.model)) report["units"][column.name] = column.unit;
-  report["warnings"] = summary.warnings;
+  report["warnings"] = warnings_json(all_warnings(loaded.model, summary, recording.steps));
   report["end"] = {{"how", summary.end}, {"time_s", recording.steps.empty() ? 0.0 : recording.steps.back().time}};
   if (summary.end == "numerical_stop") {
     report["end"]["status"] = to_string(summary.failure.status);
@@ -164,6 +182,7 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["summary"]["most_inverted_elements"] = summary.most_inverted;
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;
     report["summary"]["parts_of_halved_steps"] = summary.halved;
+    report["summary"]["steps_balanced_to_rounding"] = summary.floors;
     if (!loaded.model.pairs.empty() || !loaded.model.rubbing.empty())
       report["summary"]["contact"] = contact_json(summary.contact);
     report["time_per_step"]["threads"] = summary.threads;
@@ -231,9 +250,7 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
   // About 100 frames a run, or one per `view.interval`; the last state always.
   const std::size_t count = recording.steps.size();
   const bool dynamic = model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static;
-  const double duration = run_duration(model.scene);
-  const double interval =
-      model.scene.view.interval > 0.0 ? model.scene.view.interval : std::max(model.scene.time.step, duration / 100.0);
+  const double duration = run_duration(model.scene), interval = view_interval(model.scene);
   if (std::filesystem::exists(folder / "paraview" / "run.pvd"))
     std::filesystem::remove_all(folder / "paraview");  // of an earlier run
   io::SeriesWriter series(folder / "paraview");
@@ -270,6 +287,56 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
   if (!commands.empty())
     files.insert(files.begin() + 2, "commands.csv       what the motors are to do, for sinew run --commands");
   return files;
+}
+
+double view_interval(const Scene& scene) {
+  return scene.view.interval > 0.0 ? scene.view.interval : std::max(scene.time.step, run_duration(scene) / 100.0);
+}
+
+namespace {
+
+/// Energy that comes from nowhere: what has been dissipated so far falls, although nothing gives it back. Contact takes
+/// energy or leaves it, and so does backward Euler; long linearised steps and rods that snap may not.
+void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& steps, std::vector<Warning>& warnings) {
+  constexpr double kGain = 1e-3;  // of the largest kinetic and elastic energy so far
+  // What overlaps at the start is lifted apart, slowly, and warned of already.
+  const double kSmall = find_warning(warnings, "overlap_at_start") ? 1e-6 : 1e-14;
+  if (model.scene.analysis != Analysis::dynamic) return;
+  const std::vector<std::string> names = signal_names(model);
+  const auto column = [&names](const char* name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const std::size_t kinetic = column("energy.kinetic"), elastic = column("energy.elastic"),
+                    dissipated = column("energy.dissipated");
+  double largest = 0.0, peak = -INFINITY;
+  for (const io::RecordedStep& step : steps) {
+    if (dissipated >= step.signals.size()) return;
+    largest = std::max(largest, step.signals[kinetic] + step.signals[elastic]);
+    peak = std::max(peak, step.signals[dissipated]);
+    const double gain = peak - step.signals[dissipated];
+    if (!(gain > kGain * largest) || !(largest > kSmall * model.bearing * model.size)) continue;
+    merge({.code = "energy_gain",
+           .where = "energy",
+           .message = fmt::format("{:.3g} J have come from nowhere, {:.3g} of the largest kinetic and elastic energy",
+                                  gain, gain / largest),
+           .remedy =
+               model.scene.newton.iterations > 0 ? "take shorter steps, or leave `newton` out" : "take shorter steps",
+           .time = step.time,
+           .value = gain / largest,
+           .limit = kGain,
+           .steps = 1},
+          warnings);
+  }
+}
+
+}  // namespace
+
+std::vector<Warning> all_warnings(const Model& model, const RunSummary& summary,
+                                  const std::vector<io::RecordedStep>& steps) {
+  std::vector<Warning> all = summary.warnings;
+  for (const io::RecordedStep& step : steps) merge(step.warnings, all);
+  add_energy_gain(model, steps, all);
+  return all;
 }
 
 std::string profile(const RunSummary& summary) {

@@ -13,16 +13,16 @@ namespace sinew::runs {
 
 /// How a run ended, for report.json and for people.
 struct RunSummary {
-  std::string end = "done";           ///< done, numerical_stop, interrupted, or unfinished (from a recording alone)
-  StepReport failure;                 ///< if it stopped
-  std::vector<std::string> warnings;  ///< of the model and of the run
-  std::vector<StageTimes> times;      ///< of each step made by this program; none for recorded ones
-  int rotated = 0;                    ///< of those, steps in which the rotated tangent stood in for the exact one
-  int most_inverted = 0;              ///< of those, most elements flat or inside out in one
+  std::string end = "done";       ///< done, numerical_stop, interrupted, or unfinished (from a recording alone)
+  StepReport failure;             ///< if it stopped
+  std::vector<Warning> warnings;  ///< of the scene and of how the run ended; those of steps are recorded
+  std::vector<StageTimes> times;  ///< of each step made by this program; none for recorded ones
+  int rotated = 0;                ///< of those, steps in which the rotated tangent stood in for the exact one
+  int most_inverted = 0;          ///< of those, most elements flat or inside out in one
   int threads = 1;
   int halved = 0;         ///< of those, parts of steps that were too long
   int redundant = 0;      ///< of those, steps whose rows repeated each other
-  bool unstable = false;  ///< the last of those
+  int floors = 0;         ///< of those, steps whose forces were balanced to their rounding, not to the tolerance
   ContactReport contact;  ///< of those, as `add` puts them together
 };
 
@@ -32,6 +32,13 @@ void add(const ContactReport& step, ContactReport& all);
 std::filesystem::path recording_path(const std::filesystem::path& folder);
 
 io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report);
+
+/// What a user should know of a run: of its scene, of all its steps, and of how it ended.
+std::vector<Warning> all_warnings(const Model& model, const RunSummary& summary,
+                                  const std::vector<io::RecordedStep>& steps);
+
+/// [s] between frames of the views: the scene's, or about 100 a run.
+double view_interval(const Scene& scene);
 
 /// Where the time of the steps went, for people.
 std::string profile(const RunSummary& summary);

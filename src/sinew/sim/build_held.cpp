@@ -119,8 +119,10 @@ void check_held(Model& model, int number) {
       std::any_of(model.solid_rows.begin(), model.solid_rows.end(),
                   [&](const SolidRow& row) { return row.solid == number; });
   if (coupled || model.scene.analysis == Analysis::dynamic) {
-    model.warnings.push_back(path + ": what is fixed and its springs leave it free to " + motions +
-                             (coupled ? ", but for its couplings" : ""));
+    model.warnings.push_back({.code = "solid_free",
+                              .where = path,
+                              .message = "what is fixed and its springs leave it free to " + motions +
+                                         (coupled ? ", but for its couplings" : "")});
     return;
   }
   reject(path + ".fixed", std::to_string(solid.held()) + " coordinates", "the body is free to " + motions,

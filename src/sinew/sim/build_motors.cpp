@@ -61,9 +61,11 @@ void set_limits(Model& model, const Actuator& actuator, const std::string& path,
   const bool limited = limits.force || limits.speed || limits.force_rate || std::isfinite(own.position.least) ||
                        std::isfinite(own.position.most) || actuator.preferred;
   if (limited && !model.scene.targets.empty() && !std::holds_alternative<Sought>(actuator.drive))
-    model.warnings.push_back(path +
-                             ": limits and what is preferred are for motors that are `inverse`; this one does "
-                             "what it is told");
+    model.warnings.push_back({.code = "limits_unused",
+                              .where = path,
+                              .message = "limits and what is preferred are for actuators that are `inverse`; this one "
+                                         "does what it is told",
+                              .remedy = "leave them out, or write `inverse` as its command"});
   own.preferred = actuator.preferred.value_or(std::clamp(0.0, own.force.least, own.force.most));
 }
 
@@ -74,8 +76,13 @@ void warn_of_travel(Model& model, const std::string& path, const ActuatorModel& 
   double most = 0.0;
   for (const double value : table->values) most = std::max(most, std::abs(value));
   if (const double length = length_of(model, own.line); most > length)
-    model.warnings.push_back(path + ".displacement: " + text(most) + " m is more than the rod's length of " +
-                             text(length) + " m: numbers without a unit are metres");
+    model.warnings.push_back({.code = "unit_of_displacement",
+                              .where = path + ".displacement",
+                              .message = text(most) + " m is more than the rod's length of " + text(length) + " m",
+                              .remedy = "numbers without a unit are metres",
+                              .value = most,
+                              .limit = length,
+                              .unit = "m"});
 }
 
 }  // namespace

@@ -46,8 +46,12 @@ void on_solid(Model& model, const Output& output, const std::string& path, Outpu
       output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);
   own.where = embed_within(solid, x, output.reach, path + ".point", "the point");
   if (own.where.distance > 0.0) {
-    model.warnings.push_back(path + ": the point lies " + text(own.where.distance) +
-                             " m outside the mesh and is extrapolated");
+    model.warnings.push_back(
+        {.code = "output_outside",
+         .where = path,
+         .message = "the point lies " + text(own.where.distance) + " m outside the mesh and is extrapolated",
+         .value = own.where.distance,
+         .unit = "m"});
   }
   for (int i = 0; i < 3; ++i)
     own.axes[i] = solid::embed_vector(solid.body.rest, solid.body.cells, own.where, Vec3::Unit(i));
@@ -187,10 +191,21 @@ void warn_of_units(Model& model) {
     }
     const std::string path = "targets." + output.name + ".at";
     if (output.quantity == Quantity::position && farthest > 10.0 * model.size)
-      model.warnings.push_back(path + ": goes " + text(farthest) + " m from where the output starts, in a scene of " +
-                               text(model.size) + " m: numbers without a unit are metres");
+      model.warnings.push_back({.code = "unit_of_target",
+                                .where = path,
+                                .message = "goes " + text(farthest) +
+                                           " m from where the output starts, in a scene of " + text(model.size) + " m",
+                                .remedy = "numbers without a unit are metres",
+                                .value = farthest,
+                                .limit = model.size,
+                                .unit = "m"});
     if (output.quantity == Quantity::orientation && most > 2.0 * std::numbers::pi)
-      model.warnings.push_back(path + ": turns by " + text(most) + " rad: numbers without a unit are radians");
+      model.warnings.push_back({.code = "unit_of_target",
+                                .where = path,
+                                .message = "turns by " + text(most) + " rad",
+                                .remedy = "numbers without a unit are radians",
+                                .value = most,
+                                .unit = "rad"});
   }
 }
 

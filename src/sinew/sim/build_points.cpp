@@ -249,13 +249,24 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   model.points.insert(model.points.end(), kept.begin(), kept.end());
   model.couplings.push_back(facts);
   if (2 * facts.outside > facts.asked)
-    model.warnings.push_back(path + ": " + std::to_string(facts.outside) + " of " + std::to_string(facts.asked) +
-                             " points lie outside solids." + slide.solid + ", up to " + text(facts.farthest) +
-                             " m, and are tied to the nearest elements: is the rod where it should be?");
+    model.warnings.push_back({.code = "points_outside",
+                              .where = path,
+                              .message = std::to_string(facts.outside) + " of " + std::to_string(facts.asked) +
+                                         " points lie outside solids." + slide.solid + ", up to " +
+                                         text(facts.farthest) + " m, and are tied to the nearest elements",
+                              .remedy = "is the rod where it should be?",
+                              .value = facts.farthest,
+                              .unit = "m"});
   else if (const PointModel& tip = candidates.back();
            tip.fixed && tip.where.distance > 0.02 * model.solids[solid].mesh.diagonal)
-    model.warnings.push_back(path + ": the rod's tip, which is anchored, lies " + text(tip.where.distance) +
-                             " m outside solids." + slide.solid + ": should the rod end in the body?");
+    model.warnings.push_back({.code = "tip_outside",
+                              .where = path,
+                              .message = "the rod's tip, which is anchored, lies " + text(tip.where.distance) +
+                                         " m outside solids." + slide.solid,
+                              .remedy = "should the rod end in the body?",
+                              .value = tip.where.distance,
+                              .limit = 0.02 * model.solids[solid].mesh.diagonal,
+                              .unit = "m"});
   if (slide.anchor_tip == AnchorTip::pose)
     tie_axes(model, number, line.rod, candidates.back().abscissa, solid, asked.positions.back(),
              candidates.back().where, {}, {0, 1, 2});

@@ -57,7 +57,7 @@ void check_tied(const std::vector<solid::Cell>& cells, const std::string& path) 
 
 /// Gives 4-node tetrahedra nodes in the middle of their edges where that is asked for, or where they meet cells that
 /// have them.
-void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vector<std::string>& warnings) {
+void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vector<Warning>& warnings) {
   if (order != 1 && order != 2)
     reject(path + ".order", std::to_string(order), "must be 1 or 2", "1 keeps the elements of the file, 2 raises them");
   const auto of = [&mesh](solid::Kind kind) {
@@ -66,16 +66,20 @@ void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vec
   };
   const auto hexahedra = of(solid::Kind::hex8), linear = of(solid::Kind::tet4);
   if (order == 2 && hexahedra > 0)
-    warnings.push_back(path + ".order: raises tetrahedra only; hexahedra keep their 8 nodes (" +
-                       std::to_string(hexahedra) + " of them)");
+    warnings.push_back({.code = "order_not_raised",
+                        .where = path + ".order",
+                        .message = "raises tetrahedra only; hexahedra keep their 8 nodes (" +
+                                   std::to_string(hexahedra) + " of them)"});
   const int meeting = solid::meeting_orders(mesh.cells);
   if (order == 1 && meeting == 0) return;
   mesh = solid::quadratic(std::move(mesh));
   if (meeting == 0) return;
   if (order == 1)
-    warnings.push_back(path + ".mesh: " + std::to_string(meeting) +
-                       " 4-node tetrahedra meet 10-node ones; to tie them all 4-node tetrahedra (" +
-                       std::to_string(linear) + ") are raised to 10 nodes, as with `order: 2`");
+    warnings.push_back({.code = "order_raised",
+                        .where = path + ".mesh",
+                        .message = std::to_string(meeting) +
+                                   " 4-node tetrahedra meet 10-node ones; to tie them all 4-node tetrahedra (" +
+                                   std::to_string(linear) + ") are raised to 10 nodes, as with `order: 2`"});
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
     if (mesh.cells[i].kind == solid::Kind::tet10 && !(solid::smallest_jacobian(mesh.nodes, mesh.cells[i]) > 1e-12))
       reject(path + ".mesh", "cell " + std::to_string(i) + " (0-based, counting used cells only)",
@@ -132,14 +136,18 @@ solid::Mesh read_named(const Scene& scene, const MeshReader& read_mesh, const st
   }
 }
 
-void warn_of_scale(double size, double scale, const std::string& path, std::vector<std::string>& warnings) {
+void warn_of_scale(double size, double scale, const std::string& path, std::vector<Warning>& warnings) {
   if (scale == 1.0 && size > 5.0)
-    warnings.push_back(path + ": the mesh is " + text(size) +
-                       " m large; write `scale: 0.001` if its file is in millimetres");
+    warnings.push_back({.code = "unit_of_mesh",
+                        .where = path,
+                        .message = "the mesh is " + text(size) + " m large",
+                        .remedy = "write `scale: 0.001` if its file is in millimetres",
+                        .value = size,
+                        .unit = "m"});
 }
 
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
-                       std::vector<std::string>& warnings) {
+                       std::vector<Warning>& warnings) {
   const std::string path = "solids." + name;
   SolidModel model;
   model.name = name;

@@ -41,10 +41,13 @@ void warn_of_idle_rows(Model& model, const TieModel& tie, const std::string& pat
   const auto warn = [&](const Eigen::Matrix3Xd& by, int axis, const char* how, const char* remedy) {
     const double most = by.cwiseAbs().maxCoeff();
     if (most > 0.0 && (tie.holder.R.col(axis).transpose() * by).cwiseAbs().maxCoeff() > 1e-9 * most) return;
-    model.warnings.push_back(path + ": at the start no strain of rods." + model.rods[tie.rod].name +
-                             " and no motion of its base moves the point " + how + " the " +
-                             std::string(1, "xyz"[axis]) + " axis that holds it, so its force there is arbitrary; " +
-                             remedy);
+    model.warnings.push_back({.code = "row_unanswered",
+                              .where = path,
+                              .message = "at the start no strain of rods." + model.rods[tie.rod].name +
+                                         " and no motion of its base moves the point " + how + " the " +
+                                         std::string(1, "xyz"[axis]) +
+                                         " axis that holds it, so its force there is arbitrary",
+                              .remedy = remedy});
   };
   for (const int axis : tie.along)
     warn(moves, axis, "along", "add `elongation` to the rod's strains, or leave this axis out");

@@ -7,7 +7,7 @@
 
 #include "sinew/error/input_error.hpp"
 #include "sinew/rod/kinematics.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::building {
 
@@ -65,10 +65,10 @@ solid::Mesh read_named(const Scene& scene, const MeshReader& read_mesh, const st
                        const std::string& path);
 
 /// Warns of a mesh so large [m] that its file is likely to be in millimetres.
-void warn_of_scale(double size, double scale, const std::string& path, std::vector<std::string>& warnings);
+void warn_of_scale(double size, double scale, const std::string& path, std::vector<Warning>& warnings);
 
 SolidModel build_solid(const Scene& scene, const std::string& name, const Solid& solid, const MeshReader& read_mesh,
-                       std::vector<std::string>& warnings);
+                       std::vector<Warning>& warnings);
 RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod);
 GeometricCableModel build_cable(const Scene& scene, const std::string& name, const Rod& rod);
 
@@ -125,6 +125,13 @@ void build_target(Model& model, int number);
 void check_targets(const Model& model);
 /// Of positions without mm and turns in degrees, once everything is known.
 void warn_of_units(Model& model);
+
+/// Model::bearing: Young's moduli times areas, E A and E I / L^2 of rods, forces of loads and actuators, weights, and
+/// masses times the size of the scene over h^2. Forces of constraints far beyond are those of rows that nothing
+/// answers.
+void measure_bearing(Model& model);
+/// Rows that say the same, or contradict each other, where the robot starts; warns of them.
+void look_for_redundant_rows(Model& model, const State& start);
 
 /// Ties the axes of a rod's cross-section to the solid that holds it, position left to others.
 void tie_axes(Model& model, int coupling, int rod, double s, int solid, const Vec3& point,

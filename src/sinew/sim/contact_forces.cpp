@@ -11,7 +11,8 @@ namespace sinew {
 namespace {
 
 using Kind = Collider::Kind;
-constexpr double kTolerance = 1e-10;
+constexpr double kTolerance = 1e-12;
+constexpr double kNoCompliance = 1e-12;  ///< of the scene's size over what its bodies bear: rounding
 
 }  // namespace
 
@@ -59,13 +60,10 @@ void ContactForces::add_rows(const StepContext& context, const State& iterate, c
                     const RodModel& rod = model.rods[side.on.number];
                     const rod::Configuration& shape = reduced.rods[side.on.number].shape;
                     const int nb = rod.rod.base_coordinates();
-                    Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, nb + rod.rod.strain_coordinates());
-                    const Vec3 out = sign * -touch.nearest.normal * side.local.radius;
-                    for (int k = 0; k < side.local.corners(); ++k) {
-                      const Vec3 offset = rod::branch(shape, side.abscissae[k]).R.transpose() * out;
-                      J += weights[k] * rod::position_jacobian(shape, side.abscissae[k], offset);
-                    }
-                    J = (rows * J).eval();
+                    const double s = abscissa_of(side, weights);
+                    const rod::Branch section = rod::branch(shape, s);
+                    const Vec3 offset = section.R.transpose() * (at - section.p);
+                    const Eigen::Matrix3Xd J = rows * rod::position_jacobian(shape, s, offset);
                     if (nb > 0) on_bodies_.push_back({contact, rod.unknown, J.leftCols(nb)});
                     on_rods_.push_back({contact, side.on.number, J.rightCols(rod.rod.strain_coordinates())});
                     break;
@@ -148,6 +146,15 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
     if (!(own > 0.0)) own = 1.0;  // a point beyond the tip
     problem_.D(k, k) = problem_.D(k + 2, k + 2) = own;
   }
+  answered_.assign(touching_.size(), true);
+  const double compliance = context.model.size / context.model.bearing;
+  for (std::size_t i = 0; i < touching_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(3 * i);
+    answered_[i] = std::abs(problem_.D(k, k)) > kNoCompliance * compliance;
+    if (answered_[i]) continue;
+    for (Eigen::Index row = k; row < k + 3; ++row)
+      if (std::abs(problem_.D(row, row)) <= kNoCompliance * compliance) problem_.D(row, row) = compliance;
+  }
 }
 
 /// What forces at the contacts add to a right side of the reduced problem.
@@ -202,6 +209,20 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
   rows_.resize(n);
   motion_of(context, free, solution, true, rows_);
   problem_.b += rows_ - problem_.D * old_;
+  // What nothing answers stays as it is; where it closes all the same, no force would stop it.
+  unanswered_ = -1;
+  const double little = context.model.scene.newton.tolerance * context.model.size;
+  for (std::size_t i = 0; i < touching_.size(); ++i) {
+    if (answered_[i]) continue;
+    double& b = problem_.b[static_cast<Eigen::Index>(3 * i)];
+    const double closes = room.gaps[touching_[i]] - (b + room.least[touching_[i]]);
+    if (b < -little && closes > little) unanswered_ = touching_[i];
+    b = std::max(b, 0.0);
+  }
+  if (unanswered_ >= 0) {
+    solution.ok = false;
+    return;
+  }
   lambda_ = old_;
   rows_ = iterate.lambda + solution.dlambda;
   for (int turn = 0; turn < kMostTurns; ++turn) {

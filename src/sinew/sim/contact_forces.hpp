@@ -50,6 +50,9 @@ class ContactForces {
   /// `prepare`; that of the first is not known, and infinite.
   double error(const StepContext& context, const State& iterate, const ContactRoom& room) const;
 
+  /// The contact of the iterate that closes although nothing answers along its normal, no strain, node or body; -1:
+  /// none.
+  int unanswered() const { return unanswered_; }
   /// Of the problems since they were last forgotten, without their contacts.
   const ContactReport& report() const { return report_; }
   void forget() { report_ = {}; }
@@ -106,6 +109,8 @@ class ContactForces {
   solve::RightSide side_;
   solve::CoupledSolution answer_;
   solve::CoulombProblem problem_;
+  std::vector<bool> answered_;  ///< of each contact, along its normal
+  int unanswered_ = -1;
   solve::Coulomb coulomb_;
   ContactReport report_;
   std::vector<Eigen::MatrixXd> moved_;  ///< of each rod, its coordinates by each row

@@ -32,7 +32,10 @@ contact::Simplex Moment::placed(const ContactSide& side) const {
         break;
     }
   }
-  if (is_rigid(side.on)) own.normal = pose(side.on).R * own.normal;
+  if (is_rigid(side.on)) {
+    own.normal = pose(side.on).R * own.normal;
+    own.rim = pose(side.on).R * own.rim;
+  }
   return own;
 }
 
@@ -57,6 +60,48 @@ const contact::Mesh* mesh_of(const Model& model, const Collider& own) {
   return std::get_if<contact::Mesh>(&shape_of(model, own));
 }
 
+double thickness_of(const Model& model, const Collider& own) {
+  struct OfShape {
+    double operator()(const contact::HalfSpace&) const { return INFINITY; }
+    double operator()(const contact::Ball& ball) const { return 2.0 * ball.radius; }
+    double operator()(const contact::Capsule& capsule) const { return 2.0 * capsule.radius; }
+    double operator()(const contact::Cylinder& cylinder) const {
+      return std::min(2.0 * cylinder.radius, cylinder.length);
+    }
+    double operator()(const contact::Convex& convex) const {
+      double thin = INFINITY;
+      for (const Vec3& n : convex.surface.normals) {
+        double least = INFINITY, most = -INFINITY;
+        for (const Vec3& x : convex.surface.corners) {
+          least = std::min(least, n.dot(x));
+          most = std::max(most, n.dot(x));
+        }
+        thin = std::min(thin, most - least);
+      }
+      return thin;
+    }
+    double operator()(const contact::Mesh& mesh) const {
+      return (mesh.points.rowwise().maxCoeff() - mesh.points.rowwise().minCoeff()).minCoeff();
+    }
+  };
+  switch (own.kind) {
+    case Kind::rod: {
+      const RodModel& rod = model.rods[own.number];
+      double thin = INFINITY;
+      for (const double s : rod.touching) thin = std::min(thin, 2.0 * rod::radius_at(rod.rod.profile, s));
+      return thin;
+    }
+    case Kind::solid:
+      return (model.solids[own.number].body.rest.rowwise().maxCoeff() -
+              model.solids[own.number].body.rest.rowwise().minCoeff())
+          .minCoeff();
+    case Kind::body:
+    case Kind::obstacle:
+      break;
+  }
+  return std::visit(OfShape{}, shape_of(model, own));
+}
+
 const std::string& name_of(const Model& model, const Collider& own) {
   switch (own.kind) {
     case Kind::obstacle:
@@ -69,6 +114,25 @@ const std::string& name_of(const Model& model, const Collider& own) {
       break;
   }
   return model.rods[own.number].name;
+}
+
+void configure_touching(const Model& model, const std::vector<Placement>& bases, const State& state,
+                        std::vector<rod::Configuration>& rods) {
+  rods.resize(model.rods.size());
+  for (std::size_t i = 0; i < rods.size(); ++i) {
+    if (in_a_pair(model, {Kind::rod, static_cast<int>(i)}))
+      rod::configure(model.rods[i].rod, {bases[i], state.rods[i].turned}, state.rods[i].q, rods[i]);
+  }
+}
+
+std::vector<Placement> frames_at(const Model& model, double time) {
+  std::vector<Placement> frames;
+  for (const auto& [name, frame] : model.scene.frames) frames.push_back(frame_displacement(frame, time));
+  return frames;
+}
+
+bool are_shapes(const Model& model, const PairModel& pair) {
+  return is_rigid(pair.a) && is_rigid(pair.b) && !mesh_of(model, pair.a) && !mesh_of(model, pair.b);
 }
 
 }  // namespace sinew

@@ -36,6 +36,18 @@ const std::vector<contact::Simplex>& prongs_of(const Model& model, const Collide
 /// The surface of a solid, or of a rigid mesh; null of all else.
 const contact::Mesh* mesh_of(const Model& model, const Collider& own);
 
+/// Rods that may touch something, in a state and on these bases; others are left as they are.
+void configure_touching(const Model& model, const std::vector<Placement>& bases, const State& state,
+                        std::vector<rod::Configuration>& rods);
+/// How far each frame has moved by a time.
+std::vector<Placement> frames_at(const Model& model, double time);
+
+/// Whether neither of two has a surface of triangles or bends: contact/meeting is for these.
+bool are_shapes(const Model& model, const PairModel& pair);
+
+/// [m] the smallest extent of an object at rest; infinite of half-spaces.
+double thickness_of(const Model& model, const Collider& own);
+
 /// The name it has in the scene.
 const std::string& name_of(const Model& model, const Collider& own);
 

@@ -16,9 +16,15 @@ using contact::Simplex;
 
 /// A point of the surface: that of the axis or core moved out along the normal.
 Vec3 surface_point(const Simplex& own, const std::array<double, 3>& weights, const Vec3& out) {
-  Vec3 p = own.radius * out;
+  Vec3 p = own.radius * out + contact::lowest_on_rim(own, -out);
   for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) p += weights[i] * own.x[i];
   return p;
+}
+
+/// The same of a side that may be a rod, whose axis is touched at `foot`.
+Vec3 point_on(const ContactSide& side, const Simplex& own, const std::array<double, 3>& weights, const Vec3& foot,
+              const Vec3& out) {
+  return side.on.kind == Kind::rod ? Vec3(foot + own.radius * out) : surface_point(own, weights, out);
 }
 
 /// Where the material point p of a side, at an iterate, was at the start of the step.
@@ -28,19 +34,15 @@ Vec3 was(const ContactSide& side, const std::array<double, 3>& weights, const Ve
     const contact::Pose from = start.pose(side.on), to = now.pose(side.on);
     return from * (to.R.transpose() * (p - to.p));
   }
+  if (side.on.kind == Kind::rod) {  // the surface turns with the cross-section
+    const double s = abscissa_of(side, weights);
+    const rod::Branch from = rod::branch(start.rods[side.on.number], s), to = rod::branch(now.rods[side.on.number], s);
+    return from.p + from.R * (to.R.transpose() * (p - to.p));
+  }
   const Simplex before = start.placed(side), after = now.placed(side);
   Vec3 moved = Vec3::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(before.corners()); ++i)
     moved += weights[i] * (after.x[i] - before.x[i]);
-  if (side.on.kind == Kind::rod && after.radius > 0.0) {
-    // The surface turns with the cross-section.
-    const std::size_t near = weights[1] > weights[0] ? 1 : 0;
-    const rod::Mat3 R = rod::branch(start.rods[side.on.number], side.abscissae[near]).R *
-                        rod::branch(now.rods[side.on.number], side.abscissae[near]).R.transpose();
-    Vec3 axis = Vec3::Zero();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(after.corners()); ++i) axis += weights[i] * after.x[i];
-    moved += (p - axis) - R * (p - axis);
-  }
   return p - moved;
 }
 
@@ -53,21 +55,6 @@ constexpr std::size_t kSoughtContacts = 40;
 
 bool earlier(const ContactState& a, const ContactState& b) {
   return a.pair < b.pair || (a.pair == b.pair && a.part < b.part);
-}
-
-void configure_touching(const Model& model, const std::vector<Placement>& bases, const State& state,
-                        std::vector<rod::Configuration>& rods) {
-  rods.resize(model.rods.size());
-  for (std::size_t i = 0; i < rods.size(); ++i) {
-    if (in_a_pair(model, {Kind::rod, static_cast<int>(i)}))
-      rod::configure(model.rods[i].rod, {bases[i], state.rods[i].turned}, state.rods[i].q, rods[i]);
-  }
-}
-
-std::vector<Placement> frames_at(const Model& model, double time) {
-  std::vector<Placement> frames;
-  for (const auto& [name, frame] : model.scene.frames) frames.push_back(frame_displacement(frame, time));
-  return frames;
 }
 
 std::vector<Placement> rod_bases(const Model& model, const State& state) {
@@ -127,6 +114,173 @@ void play(ContactRoom& room, int contact) {
   if (place == room.playing.end() || *place != contact) room.playing.insert(place, contact);
 }
 
+/// The point of a part with these weights, on its true curve if it is a piece of a rod, and the tangent there of what
+/// the contact may slide along: zero of a point, at the end of a straight part and at the tips of a rod.
+struct LinePoint {
+  Vec3 x, tangent = Vec3::Zero();
+  double speed = 0.0;        ///< [m] of x per unit of the second weight
+  Vec3 bend = Vec3::Zero();  ///< [1/m] how the tangent turns along it
+};
+LinePoint line_point(const Moment& now, const ContactSide& side, const Simplex& placed,
+                     const std::array<double, 3>& weights) {
+  const bool inside = weights[1] > 0.0 && weights[1] < 1.0;
+  if (placed.corners() != 2) {
+    Vec3 x = Vec3::Zero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(placed.corners()); ++i) x += weights[i] * placed.x[i];
+    return {x};
+  }
+  if (side.on.kind == Kind::rod) {
+    const rod::Configuration& shape = now.rods[side.on.number];
+    const double s = abscissa_of(side, weights);
+    const rod::CentrePoint point = rod::centre_point(shape, s);
+    const bool tip = s <= 0.0 || s >= shape.rod->length();
+    return {point.position, tip ? Vec3(Vec3::Zero()) : Vec3(point.derivative.normalized()),
+            (side.abscissae[1] - side.abscissae[0]) * point.derivative.norm(), point.second};
+  }
+  const Vec3 along = placed.x[1] - placed.x[0];
+  return {placed.x[0] + weights[1] * along, inside ? Vec3(along.normalized()) : Vec3(Vec3::Zero()), along.norm()};
+}
+
+/// The points of two parts where they touch, on their axes.
+struct Feet {
+  Vec3 a, b;
+};
+
+/// Where two parts are nearest, one of them a piece of a rod, from where their chords are: Gauss and Newton's method
+/// for min |x_a - x_b|^2 within both. A rod that lies along a drum of about its own curvature is equally near all
+/// along; there the chords' places, which are unique, stay.
+void refine_place(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
+                  contact::Nearest& found) {
+  constexpr double kLiesAlong = 0.3;  // of the distance of the axes times the curvature
+  constexpr int kMostIterations = 10;
+  std::array<double, 3>&s = found.a, &t = found.b;
+  const std::array<double, 3> chord_s = s, chord_t = t;
+  const auto move = [](std::array<double, 3>& weights, double by) {
+    const double before = weights[1];
+    weights[1] = std::clamp(before + by, 0.0, 1.0);
+    weights[0] = 1.0 - weights[1];
+    return weights[1] - before;
+  };
+  for (int i = 0; i < kMostIterations; ++i) {
+    const LinePoint first = line_point(now, own.a, a, s), second = line_point(now, own.b, b, t);
+    const Vec3 apart = first.x - second.x, dx = first.speed * first.tangent, dy = second.speed * second.tangent;
+    if (std::max(std::abs(apart.dot(first.bend)), std::abs(apart.dot(second.bend))) > kLiesAlong) {
+      s = chord_s;
+      t = chord_t;
+      return;
+    }
+    const double aa = dx.squaredNorm(), bb = dy.squaredNorm(), ab = dx.dot(dy), fa = apart.dot(dx), fb = -apart.dot(dy),
+                 determinant = aa * bb - ab * ab;
+    double moved = 0.0;
+    if (determinant > 1e-3 * aa * bb) {
+      moved =
+          std::abs(move(s, -(bb * fa + ab * fb) / determinant)) + std::abs(move(t, -(aa * fb + ab * fa) / determinant));
+    } else if (aa > 0.0) {
+      moved = std::abs(move(s, -fa / aa));
+    } else if (bb > 0.0) {
+      moved = std::abs(move(t, -fb / bb));
+    }
+    if (moved < 1e-14) return;
+  }
+}
+
+/// Brings a contact of a rod's piece from its chord to its true curve (`refine_place`). There the tangent of the curve
+/// stands for it, a line that is carried by the cross-section: the normal is perpendicular to it (and to the other
+/// line, if that is none that ends there), so that no normal force pulls along a rod; the feet are where the two lines
+/// are nearest. So normals and gaps are off by second order in the section's length, where those of chords are off by l
+/// kappa / 2.
+Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
+                   contact::Nearest& found) {
+  const auto curved = [](const ContactSide& side, const Simplex& placed) {
+    return side.on.kind == Kind::rod && placed.corners() == 2;
+  };
+  if (curved(own.a, a) || curved(own.b, b)) refine_place(now, own, a, b, found);
+  const LinePoint first = line_point(now, own.a, a, found.a), second = line_point(now, own.b, b, found.b);
+  if (!curved(own.a, a) && !curved(own.b, b)) return {first.x, second.x};
+  constexpr double kParallel = 0.05;  // sine of the angle below which two lines are side by side
+  const Vec3 &t = first.tangent, &u = second.tangent, apart = first.x - second.x, both = t.cross(u);
+  Vec3 n = found.normal;
+  Feet feet{first.x, second.x};
+  if (both.norm() > kParallel) {
+    n = both.dot(n) < 0.0 ? Vec3(-both.normalized()) : Vec3(both.normalized());
+    const double along = t.dot(u), d = apart.dot(t), e = apart.dot(u), determinant = 1.0 - along * along;
+    feet.a -= (d - along * e) / determinant * t;
+    feet.b += (e - along * d) / determinant * u;
+  } else {
+    for (const Vec3& line : {t, u}) n -= line.dot(n) * line;
+    if (!(n.norm() > 1e-6)) return feet;
+    n.normalize();
+    if (!t.isZero()) {
+      feet.a -= apart.dot(t) * t;
+    } else {
+      feet.b += apart.dot(u) * u;
+    }
+  }
+  // The tangent stands for the curve near its point alone: a foot further away is none.
+  constexpr double kNear = 0.5;  // of the piece
+  if ((curved(own.a, a) && (feet.a - first.x).norm() > kNear * first.speed) ||
+      (curved(own.b, b) && (feet.b - second.x).norm() > kNear * second.speed))
+    return {first.x, second.x};
+  found.normal = n;
+  found.gap = n.dot(feet.a - feet.b) - a.radius - b.radius;
+  return feet;
+}
+
+/// Of two pieces of a rod that follow each other and touch the same part next to where they meet, one is enough: that
+/// which carries a force or, if neither does, that whose nearest point is not at its very end. (Both would be as good
+/// as the same row twice.)
+void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
+  constexpr double kSame = 0.1;  // of a piece
+  struct Place {
+    double s = 0.0, length = 0.0;
+    bool at_end = false;
+  };
+  const auto place_of = [&start](const ContactState& own) {
+    const contact::Nearest nearest = contact::nearest(start.placed(own.a), start.placed(own.b));
+    const bool first = own.a.on.kind == Kind::rod && own.a.local.corners() == 2;
+    const ContactSide& side = first ? own.a : own.b;
+    const std::array<double, 3>& weights = first ? nearest.a : nearest.b;
+    return Place{abscissa_of(side, weights), side.abscissae[1] - side.abscissae[0],
+                 weights[1] <= 0.0 || weights[1] >= 1.0};
+  };
+  const auto same_part = [](const ContactSide& a, const ContactSide& b) {
+    return a.on == b.on && a.nodes == b.nodes && a.abscissae == b.abscissae && a.local.kind == b.local.kind &&
+           a.local.x[0] == b.local.x[0] && (a.local.corners() < 2 || a.local.x[1] == b.local.x[1]);
+  };
+  const auto piece_of_rod = [](const ContactSide& side) {
+    return side.on.kind == Kind::rod && side.local.corners() == 2;
+  };
+  std::vector<bool> dropped(found.size(), false);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t j = i + 1; j < found.size() && found[j].pair == found[i].pair && !dropped[i]; ++j) {
+      const ContactState &one = found[i], &other = found[j];
+      const bool on_a = piece_of_rod(one.a) && one.a.on == other.a.on && same_part(one.b, other.b),
+                 on_b = piece_of_rod(one.b) && one.b.on == other.b.on && same_part(one.a, other.a);
+      if (dropped[j]) continue;
+      // A point of the rod at a face, beside an edge of it: there the rod bends round the edge, across its tangent.
+      const auto point_beside = [&](const ContactState& lone, const ContactState& piece) {
+        if (lone.a.on.kind != Kind::rod || lone.a.local.corners() != 1 || lone.b.on.kind == Kind::rod) return false;
+        if (!piece_of_rod(piece.a) || piece.a.on != lone.a.on || piece.b.on != lone.b.on) return false;
+        if (piece.b.local.radius > 0.0) return false;  // of what is round
+        const Place at = place_of(piece);
+        return std::abs(lone.a.abscissae[0] - at.s) < kSame * at.length;
+      };
+      if (point_beside(one, other)) dropped[i] = true;
+      if (point_beside(other, one)) dropped[j] = true;
+      if (dropped[i] || dropped[j] || (!on_a && !on_b) || (piece_of_rod(one.a) && piece_of_rod(one.b))) continue;
+      const Place p = place_of(one), q = place_of(other);
+      if (std::abs(p.s - q.s) > kSame * std::min(p.length, q.length)) continue;
+      const bool keep_first = !one.force.isZero(0.0) || (other.force.isZero(0.0) && !p.at_end);
+      dropped[keep_first ? j : i] = true;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!dropped[i]) found[kept++] = found[i];
+  }
+  found.resize(kept);
+}
+
 /// A contact as it is at the start of the step.
 struct Beginning {
   double gap = 0.0;       ///< [m]
@@ -134,9 +288,10 @@ struct Beginning {
 };
 Beginning beginning(const StepContext& context, const ContactState& own, const Moment& start) {
   const Simplex a = start.placed(own.a), b = start.placed(own.b);
-  const contact::Nearest nearest = contact::nearest(a, b);
+  contact::Nearest nearest = contact::nearest(a, b);
+  const Feet feet = follow_curves(start, own, a, b, nearest);
   const Vec3& n = nearest.normal;
-  const Vec3 pa = surface_point(a, nearest.a, -n), pb = pa - nearest.gap * n;
+  const Vec3 pa = point_on(own.a, a, nearest.a, feet.a, -n), pb = pa - nearest.gap * n;
   return {nearest.gap, n.dot(velocity(own.a, nearest.a, pa, context, start.frames) -
                              velocity(own.b, nearest.b, pb, context, start.frames))};
 }
@@ -180,30 +335,13 @@ double alarm_distance(const StepContext& context) {
   return 2.0 * context.h * (fastest + fall) + (moves ? 2e-3 : kStillWithin) * context.model.size;
 }
 
-bool beyond_alarm(const StepContext& context, const State& end) {
-  if (context.model.pairs.empty() || context.rate > 0.0) return false;
-  std::vector<rod::Configuration> start, now;
-  configure_touching(context.model, rod_bases(context.model, context.start), context.start, start);
-  configure_touching(context.model, context.bases, end, now);
-  double farthest = 0.0;
-  for (std::size_t i = 0; i < end.solids.size(); ++i)
-    farthest = std::max(farthest, (end.solids[i].x - context.start.solids[i].x).colwise().norm().maxCoeff());
-  for (std::size_t i = 0; i < context.model.rods.size(); ++i) {
-    if (!in_a_pair(context.model, {Kind::rod, static_cast<int>(i)})) continue;
-    for (const double s : context.model.rods[i].touching)
-      farthest = std::max(farthest, (rod::position(now[i], s) - rod::position(start[i], s)).norm());
-  }
-  return farthest > alarm_distance(context);
-}
-
-void find_contacts(const StepContext& context, State& iterate, ContactRoom& room) {
+void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm) {
   if (context.model.pairs.empty()) return;
   configure_touching(context.model, rod_bases(context.model, context.start), context.start, room.start);
   const std::vector<Placement> frames = frames_at(context.model, context.start.time);
   const Moment start{context.model, context.start, frames, room.start};
   std::vector<ContactState> found;
   room.surfaces.fit(start);
-  const double alarm = alarm_distance(context);
   const double fall = context.rate > 0.0 ? context.gravity.norm() * context.h * context.h : 0.0;
   const double depth = 2.0 * fall + 2e-3 * context.model.size;
   const double far = std::max(alarm, kSoughtWithin * context.model.size);
@@ -218,14 +356,23 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     own.force = old->force;
     own.normal = old->normal;
   }
+  drop_neighbours(start, found);
   iterate.contacts = std::move(found);
+  if (room.thin.empty()) {
+    for (const PairModel& pair : context.model.pairs)
+      room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));
+  }
+  room.found.clear();
+  for (const ContactState& own : iterate.contacts) room.found.emplace_back(own.pair, own.part);
   room.least.clear();
+  room.gaps.clear();
   room.facings.clear();
   room.playing.clear();
   std::vector<std::vector<std::pair<double, int>>> sought(context.model.pairs.size());
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
     const Beginning now = beginning(context, own, start);
+    room.gaps.push_back(now.gap);
     room.least.push_back(least_gap(context, context.model.pairs[own.pair].restitution, now));
     room.facings.push_back(contact::facing(start.placed(own.a), start.placed(own.b)));
     const auto number = static_cast<int>(i);
@@ -303,14 +450,15 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     Touch& touch = room.touches[i];
     const Simplex a = now.placed(own.a), b = now.placed(own.b);
     touch.nearest = contact::nearest(a, b, room.facings[i]);
+    const Feet feet = follow_curves(now, own, a, b, touch.nearest);
     const Vec3& n = touch.nearest.normal;
     touch.frame = frame_of(n);
     touch.force = turned(own, n);
     if (own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle)
       touch.stiffness = -touch.force.dot(n) * contact::turn_of_normal(a, b, touch.nearest, room.facings[i]);
-    touch.point_a = surface_point(a, touch.nearest.a, -n);
+    touch.point_a = point_on(own.a, a, touch.nearest.a, feet.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)
-                                                   : surface_point(b, touch.nearest.b, n);
+                                                   : point_on(own.b, b, touch.nearest.b, feet.b, n);
     const Vec3 slip = (touch.point_a - was(own.a, touch.nearest.a, touch.point_a, start, now)) -
                       (touch.point_b - was(own.b, touch.nearest.b, touch.point_b, start, now));
     touch.u = Vec3(touch.nearest.gap, slip.dot(touch.frame.col(1)), slip.dot(touch.frame.col(2)));

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "sinew/sim/contact_search.hpp"
@@ -25,19 +26,23 @@ struct Touch {
 
 /// What contacts of a step are evaluated with; memory of the last time.
 struct ContactRoom {
-  std::vector<rod::Configuration> start, now;  ///< of rods that touch something
-  Surfaces surfaces;                           ///< at the start
-  std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
+  std::vector<rod::Configuration> start, now;        ///< of rods that touch something
+  Surfaces surfaces;                                 ///< at the start
+  std::vector<contact::Facing> facings;              ///< of each contact, as it is at the start
+  std::vector<std::pair<int, std::uint64_t>> found;  ///< pair and part of each, ascending
   std::vector<Touch> touches;
   /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
   std::vector<int> playing;
+  std::vector<double> gaps;  ///< [m] of each contact at the start of the step
+  std::vector<double> thin;  ///< [m] of each pair of the model the thickness of its thinner object
   /// [m] least gap of each at the end of the step: 0, or below while bodies that overlap are moved apart, or above
   /// where one bounces.
   std::vector<double> least;
 };
 
-/// Finds what may touch within the step, starting from where the step starts; forces that the iterate has are kept.
-void find_contacts(const StepContext& context, State& iterate, ContactRoom& room);
+/// Finds what may touch within the step, starting from where the step starts, within `alarm` [m] of each other, or what
+/// a pair's targets ask for; forces that the iterate has are kept.
+void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm);
 
 /// Where the contacts of an iterate are.
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);
@@ -45,6 +50,17 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
 /// Writes where contacts are into an accepted state, and drops those that are open, but for the nearest of a pair that
 /// is sought and does not touch.
 void finish_contacts(const StepContext& context, const ContactRoom& room, State& next);
+
+/// [m] of the point of a rod's part that these weights of its ends tell.
+inline double abscissa_of(const ContactSide& side, const std::array<double, 3>& weights) {
+  return side.local.corners() == 1 ? side.abscissae[0]
+                                   : weights[0] * side.abscissae[0] + weights[1] * side.abscissae[1];
+}
+
+/// [m] by which a contact of the last iterate overlaps more than it may; 0 where it does not.
+inline double overlap_of(const ContactRoom& room, std::size_t contact) {
+  return std::max(0.0, std::min(0.0, room.least[contact]) - room.touches[contact].u[0]);
+}
 
 /// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,
 /// -1 for what feels the opposite.
@@ -62,11 +78,8 @@ struct Overlap {
 /// All pairs that overlap by more than a millionth of the model's size at the start of a run.
 std::vector<Overlap> overlaps(const Model& model, const State& start);
 
-/// How far parts may be apart at the start of a step to be looked at [m].
+/// How far parts may be apart at the start of a step to be looked at [m], as velocities have it; sim/contact_passage
+/// looks again once the motion is known.
 double alarm_distance(const StepContext& context);
-
-/// Whether an equilibrium is further from the start of its step than contacts have been looked for; motion shows that
-/// by its speed beforehand.
-bool beyond_alarm(const StepContext& context, const State& end);
 
 }  // namespace sinew

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <functional>
 
 namespace sinew {
 
@@ -26,6 +27,19 @@ Eigen::MatrixXd no_internal(const RodModel& rod) {
 
 void write_internal(const std::vector<rod::Balance>& along, RodState& state) {
   Eigen::MatrixXd& internal = state.internal;
+  if (std::ssize(along) > internal.cols()) {  // more contacts than there is room for: the smallest jumps are left out
+    std::vector<double> jumps;
+    for (const rod::Balance& at : along) jumps.push_back((at.beyond - at.before).squaredNorm());
+    std::vector<double> sorted = jumps;
+    const auto kept = static_cast<std::size_t>(internal.cols());
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(kept - 1), sorted.end(),
+                     std::greater<>());
+    std::vector<rod::Balance> large;
+    for (std::size_t i = 0; i < along.size() && large.size() < kept; ++i) {
+      if (jumps[i] >= sorted[kept - 1]) large.push_back(along[i]);
+    }
+    return write_internal(large, state);
+  }
   auto column = internal.cols() - static_cast<Eigen::Index>(along.size());
   internal.leftCols(column).setZero();
   internal.row(0).head(column).setConstant(-1.0);

@@ -274,6 +274,35 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
   }
 }
 
+void Inverse::add_agreement(const Model& model, const Reduced& reduced) {
+  const auto n = static_cast<Eigen::Index>(model.sought.size());
+  for (const RedundantRows& redundant : reduced.redundant) {
+    for (Eigen::Index k = 0; k < redundant.null.cols(); ++k) {
+      Eigen::RowVectorXd own = Eigen::RowVectorXd::Zero(n);
+      double apart = 0.0;
+      for (std::size_t i = 0; i < redundant.rows.size(); ++i) {
+        const double part = redundant.null(static_cast<Eigen::Index>(i), k);
+        apart += part * reduced.problem.c[redundant.rows[i]];
+        for (Eigen::Index a = 0; a < n; ++a) {
+          if (model.actuators[model.sought[static_cast<std::size_t>(a)]].row == redundant.rows[i]) own[a] = part;
+        }
+      }
+      const double size = own.norm();
+      if (!(size > 0.0)) continue;
+      const Eigen::Index row = problem_.A.rows();
+      problem_.A.conservativeResize(row + 1, n);
+      problem_.C.conservativeResize(row + 1, problem_.C.cols());
+      problem_.A.row(row) = own / size;
+      problem_.C.row(row).setZero();
+      for (Eigen::VectorXd* const vector : {&problem_.lower, &problem_.upper, &problem_.firmness, &problem_.unit})
+        vector->conservativeResize(row + 1);
+      problem_.lower[row] = problem_.upper[row] = apart / size;
+      problem_.firmness[row] = INFINITY;
+      problem_.unit[row] = model.size;
+    }
+  }
+}
+
 void Inverse::steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment) {
   const bool polished = !here.touched();  // (with contacts the increment answers their forces, too)
   look(context, iterate, here, increment, polished);
@@ -281,6 +310,7 @@ void Inverse::steer(const StepContext& context, const State& iterate, Linearizat
   problem_.J = weights_.asDiagonal() * J_;
   problem_.L = weights_.asDiagonal() * L_;
   set_limits(context, iterate, increment.reduced);
+  add_agreement(context.model, here.reduced());
   binding_.clear();
   dropped_.clear();
   if (!steering_.solve(problem_)) {
@@ -400,7 +430,7 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   context.set(start, command, time - start.time);
   context.rate = 0.0;
   memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts());
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
   return solve_there(memory, solid::Tangent::exact, times, steer);
 }
 

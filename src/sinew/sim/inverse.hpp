@@ -57,6 +57,8 @@ class Inverse {
   double value_of(const Model& model, const State& state, Eigen::Index row) const;
   double unit_of(const Model& model, Eigen::Index row) const;
   void set_limits(const StepContext& context, const State& iterate, const solve::CoupledSolution& solution);
+  /// Commands of rows that depend on each other must agree: N^T (c - p) = 0.
+  void add_agreement(const Model& model, const Reduced& reduced);
 
   Goal goal_;
   solve::CoupledFactor::Part part_ = solve::CoupledFactor::Part::all;

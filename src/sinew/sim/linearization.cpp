@@ -8,8 +8,26 @@
 
 #include "sinew/linalg/finite.hpp"
 #include "sinew/sim/clock.hpp"
+#include "sinew/sim/contact_passage.hpp"
 
 namespace sinew {
+
+namespace {
+
+/// The compliance of rows that depend on each other, of the model's groups and others.
+void add_redundant(const Model& model, const State& iterate, const std::vector<std::vector<int>>& more,
+                   Reduced& reduced) {
+  reduced.redundant.clear();
+  for (const auto* const groups : {&model.redundant, &more}) {
+    for (const std::vector<int>& rows : *groups) {
+      RedundantRows own = redundant_rows(model, iterate, reduced.problem, rows);
+      if (own.null.cols() > 0) reduced.redundant.push_back(std::move(own));
+    }
+  }
+  for (const RedundantRows& own : reduced.redundant) add_compliance(own, model.size / model.bearing, reduced.problem);
+}
+
+}  // namespace
 
 template <class OfSolid, class OfRods>
 void Linearization::beside(const OfSolid& of_solid, const OfRods& of_rods) {
@@ -54,6 +72,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
       [&](StageTimes& own) {
         Clock clock(own.rods);
         linearize(context, iterate, contacts_.touches, reduced_);
+        add_redundant(context.model, iterate, redundant_, reduced_);
         if (!then) return;
         clock.next(own.solve);
         factor_.eliminate_chains(reduced_.problem);
@@ -75,7 +94,12 @@ rod::Configuration& Linearization::shape(int rod) {
 ContactReport Linearization::contact_report() const {
   ContactReport report = contact_forces_.report();
   report.contacts = static_cast<int>(contacts_.playing.size() + context_->model.rubbing.size());
-  for (const Touch& touch : contacts_.touches) report.penetration = std::max(report.penetration, -touch.u[0]);
+  for (std::size_t i = 0; i < std::min(contacts_.touches.size(), iterate_->contacts.size()); ++i) {
+    if (const double own = overlap_of(contacts_, i); own > report.penetration) {
+      report.penetration = own;
+      report.deepest_pair = iterate_->contacts[i].pair;
+    }
+  }
   return report;
 }
 
@@ -86,6 +110,40 @@ bool Linearization::finite() const {
          std::all_of(forces_.begin(), forces_.end(), [](const SolidForces& own) { return linalg::finite(own.r); }) &&
          std::all_of(problem.chains.begin(), problem.chains.end(),
                      [](const solve::ChainPart& part) { return linalg::finite(part.r); });
+}
+
+bool Linearization::find_redundant() {
+  const auto known = [this](const std::vector<int>& rows) {
+    const auto same = [&rows](const std::vector<int>& own) { return own == rows; };
+    const auto& all = context_->model.redundant;
+    return std::any_of(all.begin(), all.end(), same) || std::any_of(redundant_.begin(), redundant_.end(), same);
+  };
+  bool more = false;
+  for (std::vector<int>& rows : find_redundant_rows(context_->model, *iterate_, reduced_.problem)) {
+    if (known(rows)) continue;
+    redundant_.push_back(std::move(rows));
+    more = true;
+  }
+  return more;
+}
+
+const RedundantRows* Linearization::contradicting(double limit) const {
+  for (const RedundantRows& own : reduced_.redundant) {
+    if (own.contradiction(reduced_.problem.c) > limit) return &own;
+  }
+  return nullptr;
+}
+
+std::string Linearization::unanswered_contact() const {
+  if (!contacts_ready_ || contact_forces_.unanswered() < 0) return {};
+  const Model& model = context_->model;
+  const ContactState& own = iterate_->contacts[contact_forces_.unanswered()];
+  std::string rods;
+  for (const Collider& side : {own.a.on, own.b.on}) {
+    if (side.kind == Collider::Kind::rod) rods += (rods.empty() ? "rods." : " and rods.") + name_of(model, side);
+  }
+  return name_of_pair(model, own.pair) + " press along a direction that no strain and no motion answers" +
+         (rods.empty() ? "" : "; add `elongation` to the strains of " + rods);
 }
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {

@@ -42,7 +42,17 @@ class Linearization {
   double contact_error() const { return contact_forces_.error(*context_, *iterate_, contacts_); }
   /// Of contacts at the iterate, and of all that was solved for them since they were last `forgotten`.
   ContactReport contact_report() const;
-  void forget_contacts() { contact_forces_.forget(); }
+  void forget() {
+    contact_forces_.forget();
+    redundant_.clear();
+  }
+  /// Looks for rows that depend on each other at the iterate beside those that are known (Model::redundant), as they do
+  /// in some postures. True if there are any: they are known from now on, and forces must be `evaluate`d again. They
+  /// are `forgotten` with the contacts.
+  bool find_redundant();
+  /// Rows that contradict each other by more than `limit` [m] at the iterate, no motion can answer them all; null:
+  /// none.
+  const RedundantRows* contradicting(double limit) const;
   /// The last problem of contacts that was solved.
   const solve::CoulombProblem& contact_problem() const { return contact_forces_.problem(); }
 
@@ -96,6 +106,8 @@ class Linearization {
   /// Contacts and rubbing points are part of what is solved here.
   bool touched() const { return contacts_ready_; }
   const ContactForces& contact_forces() const { return contact_forces_; }
+  /// "ball and r ...": names a contact that nothing answers; empty if there is none.
+  std::string unanswered_contact() const;
   /// How a reduced solution, and the last forces on volumes if they still stand (`pushed`), move their rows [m]; how
   /// forces on these change the reduced solution, and watched points (added).
   void contact_motion(const solve::CoupledSolution& solution, bool pushed, Eigen::Ref<Eigen::VectorXd> u) {
@@ -130,6 +142,7 @@ class Linearization {
   const StepContext* context_ = nullptr;
   const State* iterate_ = nullptr;
   StageTimes* times_ = nullptr;
+  std::vector<std::vector<int>> redundant_;  ///< groups of rows found beside the model's
   std::vector<SolidForces> forces_;
   Reduced reduced_;
   double largest_ = 0.0, scale_ = 0.0, stiffness_ = 0.0;

@@ -244,6 +244,7 @@ std::vector<NaturalMode> natural_modes(const Model& model, Workspace& workspace,
   StageTimes times;
   const StepContext context = make_context(model, equilibrium, command_at(model, 0.0), 0.0);
   Linearization& here = workspace.memory().here;
+  here.forget();
   here.evaluate(context, equilibrium, times);
   if (!here.conservative()) {
     failed =

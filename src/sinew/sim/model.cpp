@@ -149,16 +149,26 @@ void warn_of_locking(Model& model, const SolidModel& solid) {
     poisson = std::max(poisson, 0.5 * moduli.lambda / (moduli.lambda + moduli.mu));
   }
   if (poisson > 0.48) {
-    model.warnings.push_back("solids." + solid.name + ": 4-node tetrahedra lock at Poisson's ratio " + text(poisson) +
-                             " and bend too little; set `order: 2` (10-node tetrahedra)");
+    model.warnings.push_back(
+        {.code = "elements_lock",
+         .where = "solids." + solid.name,
+         .message = "4-node tetrahedra lock at Poisson's ratio " + text(poisson) + " and bend too little",
+         .remedy = "set `order: 2` (10-node tetrahedra)",
+         .value = poisson,
+         .limit = 0.48});
   }
 }
 
 /// The softest gels have some 100 Pa. 0 is none, of a section whose stiffness is given.
-void warn_of_softness(double young, const std::string& path, std::vector<std::string>& warnings) {
+void warn_of_softness(double young, const std::string& path, std::vector<Warning>& warnings) {
   if (young > 0.0 && young < 50.0)
-    warnings.push_back(path + ": Young's modulus is " + text(young) +
-                       " Pa, less than that of any gel: numbers without a unit are pascals");
+    warnings.push_back({.code = "unit_of_modulus",
+                        .where = path,
+                        .message = "Young's modulus is " + text(young) + " Pa, less than that of any gel",
+                        .remedy = "numbers without a unit are pascals",
+                        .value = young,
+                        .limit = 50.0,
+                        .unit = "Pa"});
 }
 
 /// Where the file has elements that are not used, the body has holes.
@@ -171,9 +181,10 @@ void warn_of_holes(Model& model, const SolidModel& solid) {
     found += (found.empty() ? "" : ", ") + std::to_string(count) + " of kind " + kind;
   }
   if (found.empty()) return;
-  model.warnings.push_back("solids." + solid.name +
-                           ".mesh: the body has holes where the file has cells that are not used, " + found +
-                           "; save the mesh with tetrahedra of 4 or 10 nodes or hexahedra of 8");
+  model.warnings.push_back({.code = "mesh_holes",
+                            .where = "solids." + solid.name + ".mesh",
+                            .message = "the body has holes where the file has cells that are not used, " + found,
+                            .remedy = "save the mesh with tetrahedra of 4 or 10 nodes or hexahedra of 8"});
 }
 
 /// Concentrated loads of each rod: where its internal forces may jump.
@@ -191,7 +202,7 @@ void count_jumps(Model& model) {
     if (own && own->concentrated()) at(own->rod, 1);
   }
   for (const ActuatorModel& actuator : model.actuators) at(actuator.line.rod, actuator.tendon ? 2 : 0);
-  for (RodModel& rod : model.rods) rod.jumps += static_cast<int>(rod.touching.size());
+  for (RodModel& rod : model.rods) rod.jumps += 2 * static_cast<int>(rod.touching.size());
 }
 
 void measure(Model& model) {
@@ -233,11 +244,20 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   const double steps = scene.time.duration / scene.time.step;
   const bool grid = scene.analysis == Analysis::dynamic || scene.analysis == Analysis::quasi_static;
   if (grid && steps > 0.0 && steps < 1.0 - 1e-6) {
-    model.warnings.push_back("time.step of " + text(scene.time.step) + " s is longer than the run of " +
-                             text(scene.time.duration) + " s: numbers without a unit are seconds");
+    model.warnings.push_back(
+        {.code = "unit_of_time",
+         .where = "time.step",
+         .message = text(scene.time.step) + " s is longer than the run of " + text(scene.time.duration) + " s",
+         .remedy = "numbers without a unit are seconds",
+         .value = scene.time.step,
+         .limit = scene.time.duration,
+         .unit = "s"});
   } else if (grid && std::abs(steps - std::round(steps)) > 1e-6) {
-    model.warnings.push_back("time.duration is no whole number of steps; the run goes on to the next one, " +
-                             text(std::ceil(steps) * scene.time.step) + " s");
+    model.warnings.push_back({.code = "duration_rounded",
+                              .where = "time.duration",
+                              .message = "it is no whole number of steps, so the run goes on to " +
+                                         text(std::ceil(steps) * scene.time.step) + " s",
+                              .remedy = "give a multiple of time.step"});
   }
   if (scene.solids.empty() && scene.rods.empty() && scene.bodies.empty()) {
     reject("", "", "the scene has neither solids nor rods nor bodies",
@@ -262,16 +282,27 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
       model.rods.push_back(build_rod(scene, name, rod));
       const RodModel& built = model.rods.back();
       if (built.path_deviation > 0.01 * built.rod.length())
-        model.warnings.push_back("rods." + name + ": it starts " + text(built.path_deviation) +
-                                 " m off its path, which its sections and strains cannot follow");
+        model.warnings.push_back({.code = "rod_off_path",
+                                  .where = "rods." + name,
+                                  .message = "it starts " + text(built.path_deviation) +
+                                             " m off its path, which its sections and strains cannot follow",
+                                  .remedy = "give it more sections, or the strains that the path asks for",
+                                  .value = built.path_deviation,
+                                  .limit = 0.01 * built.rod.length(),
+                                  .unit = "m"});
       warn_of_softness(rod.material.young, "rods." + name, model.warnings);
       for (std::size_t i = 0; i < rod.parts.size(); ++i)
         warn_of_softness(rod.parts[i].material.young, "rods." + name + ".parts." + std::to_string(i), model.warnings);
       const double radius = rod::radius_at(built.rod.profile, 0.0);
       if (radius > 0.5 * built.rod.length())
-        model.warnings.push_back("rods." + name + ": its radius of " + text(radius) +
-                                 " m is more than half its length of " + text(built.rod.length()) +
-                                 " m: numbers without a unit are metres");
+        model.warnings.push_back({.code = "unit_of_radius",
+                                  .where = "rods." + name,
+                                  .message = "its radius of " + text(radius) + " m is more than half its length of " +
+                                             text(built.rod.length()) + " m",
+                                  .remedy = "numbers without a unit are metres",
+                                  .value = radius,
+                                  .limit = 0.5 * built.rod.length(),
+                                  .unit = "m"});
     }
   }
   for (const auto& [name, body] : scene.bodies) build_body(model, name, body, read_mesh);
@@ -302,13 +333,19 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   warn_of_units(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();
+  measure_bearing(model);
+  look_for_redundant_rows(model, start);
   for (const Overlap& own : overlaps(model, start)) {
     PairModel& pair = model.pairs[own.pair];
     pair.depth = 1.2 * own.depth;
-    model.warnings.push_back("contact: " + name_of(model, pair.a) + " and " + name_of(model, pair.b) + " overlap by " +
-                             text(1e3 * own.depth) +
-                             " mm at the start and are moved apart slowly; move one of them, or write `off: true` for "
-                             "the pair");
+    model.warnings.push_back({.code = "overlap_at_start",
+                              .where = "contact",
+                              .message = name_of(model, pair.a) + " and " + name_of(model, pair.b) + " overlap by " +
+                                         text(1e3 * own.depth) + " mm at the start and are moved apart slowly",
+                              .remedy = "move one of them, or write `off: true` for the pair",
+                              .value = own.depth,
+                              .limit = 1e-6 * model.size,
+                              .unit = "m"});
   }
   return model;
 }

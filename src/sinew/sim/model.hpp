@@ -13,6 +13,7 @@
 
 #include "sinew/contact/shape.hpp"
 #include "sinew/contact/tree.hpp"
+#include "sinew/error/warning.hpp"
 #include "sinew/linalg/sparse_factor.hpp"
 #include "sinew/rigid/body.hpp"
 #include "sinew/rod/geometric_cable.hpp"
@@ -289,7 +290,8 @@ struct Model {
   std::vector<LoadModel> loads;
   std::vector<OutputModel> outputs;
   std::vector<CouplingFacts> couplings;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;            ///< of the scene
+  std::vector<std::vector<int>> redundant;  ///< groups of rows that depend on each other at the start (sim/redundancy)
   int unknowns = 0;  ///< size of z: coordinates of bases, cables and rigid bodies, abscissae, what ties follow
   int first_followed = 0, followed = 0;  ///< of the latter among them
   Eigen::VectorXd arms;                  ///< per unknown z: [m] by which a moment is compared with forces, 1 of forces
@@ -298,6 +300,8 @@ struct Model {
   std::vector<Eigen::Matrix3Xd> start_masses;  ///< [m] mass points of each rod at t = 0
   double size = 0.0;                           ///< [m] diagonal of everything at rest: the yardstick of lengths
   Vec3 middle = Vec3::Zero();                  ///< [m] of it
+  double bearing =
+      0.0;  ///< [N] what its bodies may bear at most: stiffness times size, loads, what stops them in a step
 };
 
 using MeshReader = std::function<solid::Mesh(const std::filesystem::path&)>;

@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <cstdio>
 
+#include "sinew/sim/assessment.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
@@ -28,6 +30,9 @@ void judge(const StepContext& context, bool fixed, const State& state, StepRepor
   } else if (const RodModel* rod = exhausted(context.model, state)) {
     report.status = Status::rod_exhausted;
     report.detail = "rods." + rod->name;
+  } else if (std::string beyond = beyond_bearing(context.model, state); !beyond.empty()) {
+    report.status = Status::inconsistent;
+    report.detail = std::move(beyond);
   } else {
     report.status = fixed ? Status::linearized : Status::converged;
     report.detail.clear();
@@ -112,17 +117,53 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.contact = here.contact_report();
     report.status = status;
     report.detail = std::move(detail);
+    // Where what is left of the rows is what no motion can answer, that is the reason.
+    const double left =
+        std::max(0.5 * report.violation, 10.0 * context.model.scene.newton.tolerance * context.model.size);
+    if (const RedundantRows* rows = here.contradicting(left)) {
+      report.status = Status::inconsistent;
+      report.detail = describe_contradiction(context.model, *rows, here.reduced().problem.c);
+    }
     return report;
   };
   const auto complete = [&] {
     finish(context, iterate.state, here);
+    memory.passage = look_again(context, iterate.state, here.contacts(), memory.alarm);
+    report.contact = here.contact_report();
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
-    report.contact = here.contact_report();
+    if (const double left = std::max(0.5 * report.violation, 1e-4 * context.model.size); rules.fixed) {
+      if (const RedundantRows* rows = here.contradicting(left)) {
+        report.status = Status::inconsistent;
+        report.detail = describe_contradiction(context.model, *rows, here.reduced().problem.c);
+      }
+    }
+    if (!context.model.pairs.empty() && accepted(report.status)) {
+      if (std::string gained = contact_adds_energy(context, iterate.state); !gained.empty()) {
+        report.status = Status::max_iterations;
+        report.detail = std::move(gained);
+      }
+    }
+    if (memory.passage.kind != Passage::Kind::none && accepted(report.status)) {
+      char text[64];
+      std::snprintf(text, sizeof text, " by %.3g mm on the way", 1e3 * memory.passage.depth);
+      report.status = Status::passed_through;
+      report.detail = name_of_pair(context.model, memory.passage.pair) + text;
+    }
+    report.redundant |= !here.reduced().redundant.empty();
+    if (accepted(report.status) && rules.evaluation == Evaluation::full) {
+      assess(context, here, iterate.state, report);
+      report.judged = true;
+    }
     return report;
   };
   memory.search.begin();
-  here.forget_contacts();
+  here.forget();
+  memory.passage = {};
+  double contradiction = 0.0, left_off = INFINITY;
+  int steady = 0;  // iterations that have made what is off smaller, one after the other
+  constexpr double kContracts = 0.8;
+  constexpr int kSteady = 4, kPatience = 3;
   for (;; ++report.newton) {
     if (report.newton == 0 || rules.across) {
       at(iterate.t, context);
@@ -146,13 +187,30 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       const std::string where = broken_cell(context.model, iterate.state);
       return where.empty() ? fail(Status::diverged, "forces are not finite") : fail(Status::inverted, where);
     }
+    const Convergence converged = convergence_of(context.model, here, stiffness);
     if (rules.fixed ? report.newton == rules.limit
-                    : report.newton > 0 && balanced(context.model, here, stiffness) &&
+                    : report.newton > 0 && converged.met &&
                           here.contact_error() <= context.model.scene.newton.tolerance * context.model.size) {
+      report.at_floor = !rules.fixed && converged.at_floor;
       write_forces(here, iterate.state);
       return complete();
     }
-    if (!rules.fixed && report.newton == rules.limit) return fail(Status::max_iterations, "");
+    // With contacts, whose curvature the tangent lacks, an iteration that contracts steadily is let go on beyond its
+    // limit: to begin again with half the step costs more.
+    const double size = context.model.size,
+                 off = std::max({report.residual, report.violation / size, here.contact_error() / size});
+    steady = off < kContracts * left_off ? steady + 1 : 0;
+    left_off = off;
+    const int limit = steady >= kSteady && !context.model.pairs.empty() ? kPatience * rules.limit : rules.limit;
+    if (!rules.fixed && report.newton >= limit) return fail(Status::max_iterations, "");
+    if (!here.reduced().redundant.empty() && report.newton > 1) {  // forces are balanced, and rows do not get nearer
+      const bool balanced_forces = here.largest() <= 1e-6 * here.scale();
+      const bool stays = contradiction > 0.0 && report.violation > 0.999 * contradiction;
+      const RedundantRows* const rows = balanced_forces && stays ? here.contradicting(0.9 * report.violation) : nullptr;
+      if (rows)
+        return fail(Status::inconsistent, describe_contradiction(context.model, *rows, here.reduced().problem.c));
+      contradiction = report.violation;
+    }
     std::string failed;
     const char* const single =
         context.model.scene.newton.precision == linalg::Precision::float32 ? ", in `newton: {precision: single}`" : "";
@@ -171,6 +229,14 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       here.stiffen();
       here.solve(increment);
     }
+    if (std::string contact = here.unanswered_contact(); !contact.empty())
+      return fail(Status::inconsistent, std::move(contact));
+    if ((!increment.reduced.ok || increment.reduced.redundant) && here.find_redundant()) {
+      --report.newton;  // the same iteration once more, with the compliance of these rows
+      continue;
+    }
+    for (const RedundantRows& own : here.reduced().redundant)
+      own.make_smallest(iterate.state.lambda, increment.reduced.dlambda);
     report.redundant |= increment.reduced.redundant;
     if (here.stalled()) return fail(Status::singular, std::string("solids") + single);
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");

@@ -1,9 +1,11 @@
 // Newton's iteration on a whole scene, of time steps and statics alike.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
+#include "sinew/sim/contact_passage.hpp"
 #include "sinew/sim/inverse.hpp"
 
 namespace sinew {
@@ -68,6 +70,8 @@ struct Memory {
   Iterate iterate;
   Command command;
   Inverse inverse;
+  double alarm = 0.0;                  ///< [m] within which contacts are looked for
+  Passage passage;                     ///< what the second look at them has found
   std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
 };
 
@@ -79,6 +83,25 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
 
 /// How the scene wants its steps made, or whoever makes them.
 NewtonRules step_rules(const Model& model, const Effort& effort);
+
+/// Repeats a step as long as its second look finds contacts that were not looked for, each time within a longer
+/// distance, a few times at most. `make` makes it with Memory::alarm, which begins as `alarm`.
+template <class Make>
+StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
+  constexpr int kLooks = 4;
+  memory.alarm = alarm;
+  StepReport report = make();
+  for (int looks = 1; memory.passage.kind == Passage::Kind::missed && looks < kLooks; ++looks) {
+    memory.alarm = std::max(2.0 * memory.alarm, 1.5 * memory.passage.alarm);
+    const StepReport earlier = std::move(report);
+    report = make();
+    report.times += earlier.times;
+    report.newton += earlier.newton;
+    report.contact.sweeps += earlier.contact.sweeps;
+    report.contact.newton += earlier.contact.newton;
+  }
+  return report;
+}
 
 /// Context and first guess of a step of h from its start in Memory::context to a command; returns the seconds that
 /// finding contacts took.

@@ -100,17 +100,17 @@ void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
     const Vec3 &force = touches[i].force, &n = touches[i].nearest.normal;
     const Vec3 normal = n * n.dot(force), friction = force - normal;
     each_side(rod.iterate().contacts[i], touches[i],
-              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3&, double sign) {
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& point, double sign) {
                 if (side.on != Collider{Collider::Kind::rod, rod.number()} || force.isZero(0.0)) return;
-                for (int k = 0; k < side.local.corners(); ++k) {
-                  rod::PointLoad pressed{side.abscissae[k], Vec3::Zero(), -sign * weights[k] * normal};
-                  const bool lone = side.local.corners() == 1;
-                  if (lone && !touches[i].stiffness.isZero(0.0)) pressed.stiffness = &touches[i].stiffness;
-                  rod.load(pressed);
-                  const Vec3 out = sign * -n * side.local.radius;
-                  rod.load({side.abscissae[k], rod::branch(rod.shape(), side.abscissae[k]).R.transpose() * out,
-                            -sign * weights[k] * friction});
-                }
+                const double s = abscissa_of(side, weights);
+                const rod::Branch section = rod::branch(rod.shape(), s);
+                const Vec3 surface = section.R.transpose() * (point - section.p),
+                           out = section.R.transpose() * (sign * -n * side.local.radius);
+                const bool lone = side.local.corners() == 1;
+                rod::PointLoad pressed{s, lone ? Vec3(Vec3::Zero()) : Vec3(surface - out), -sign * normal};
+                if (lone && !touches[i].stiffness.isZero(0.0)) pressed.stiffness = &touches[i].stiffness;
+                rod.load(pressed);
+                rod.load({s, surface, -sign * friction});
                 rod.reduced().scale = std::max(rod.reduced().scale, force.norm());
               });
   }

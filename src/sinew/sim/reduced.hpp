@@ -5,6 +5,7 @@
 #include "sinew/rod/forces.hpp"
 #include "sinew/rod/geometric_cable.hpp"
 #include "sinew/sim/contacts.hpp"
+#include "sinew/sim/redundancy.hpp"
 #include "sinew/solve/direct.hpp"
 
 namespace sinew {
@@ -27,7 +28,8 @@ struct Reduced {
   std::vector<std::vector<rod::Balance>> internal;  ///< of each rod
   std::vector<RodParts> rods;
   std::vector<rod::CableLength> cables;
-  double largest = 0.0;    ///< [N] largest unbalanced generalised force, by its lever arm
+  std::vector<RedundantRows> redundant;  ///< rows that depend on each other here; W has their compliance already
+  double largest = 0.0;                  ///< [N] largest unbalanced generalised force, by its lever arm
   double scale = 0.0;      ///< [N] what residuals are measured against: the largest of elastic, sliding and motor
                            ///< forces, and of the sums of inertia and weight of a rod
   double violation = 0.0;  ///< [m] largest violation of a row

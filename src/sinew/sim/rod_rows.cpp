@@ -24,6 +24,16 @@ void sort_few(std::vector<T>& list, const Earlier& earlier) {
 
 }  // namespace
 
+Eigen::VectorXd strain_levers(const rod::Rod& rod) {
+  Eigen::VectorXd levers(rod.strain_coordinates());
+  for (int i = 0; i < rod.count(); ++i) {
+    const rod::Section& section = rod.sections[i];
+    for (std::size_t c = 0; c < section.modes.size(); ++c)
+      levers[rod.first[i] + static_cast<int>(c)] = lever(rod, section, section.modes[c]);
+  }
+  return levers;
+}
+
 RodRows::RodRows(const StepContext& context, const State& iterate, int number, Reduced& reduced)
     : context_(context), iterate_(iterate), number_(number), reduced_(reduced), own_(reduced.rods[number]) {
   rod::reconfigure(context.model.rods[number].rod, base_of(context, iterate, number), iterate.rods[number].q,

@@ -44,6 +44,9 @@ class RodRows {
   RodParts& own_;
 };
 
+/// [m], [m^2]: what a generalised force of each strain of a rod is divided by to compare it with forces.
+Eigen::VectorXd strain_levers(const rod::Rod& rod);
+
 /// Axes of what holds a tie, at an iterate, as columns `TieModel::length` long.
 rod::Mat3 holder_axes(const StepContext& context, const State& iterate, const TieModel& tie);
 

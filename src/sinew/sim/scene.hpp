@@ -448,7 +448,7 @@ struct Time {
 struct Newton {
   int iterations = 0;       ///< 0: until the tolerance is met; n: exactly n linearisations (1 is the paper's step)
   int limit = 25;           ///< with iterations = 0: not converged beyond this, and the step is halved
-  double tolerance = 1e-9;  ///< relative to the force and to the size of the scene (sim/step_ends `balanced`)
+  double tolerance = 1e-9;  ///< relative to the force and to the size of the scene (sim/step_ends `convergence_of`)
   /// In which the matrices of volumes are factored; solutions are refined to double precision.
   linalg::Precision precision = linalg::Precision::float64;
 };

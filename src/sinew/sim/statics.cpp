@@ -79,9 +79,11 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
   }
   StepReport report;
   if (from.t < kBehindTheStart || state.path.count > kMostSteps) {
-    char text[60];
-    std::snprintf(text, sizeof text, "it came as far as %.3g %% of the load", 100.0 * state.path.farthest);
-    report.status = Status::path_lost;
+    const bool turned_back = from.t < kBehindTheStart;
+    char text[80];
+    std::snprintf(text, sizeof text, "it came as far as %.3g %% of the load in %.0f steps", 100.0 * state.path.farthest,
+                  state.path.count);
+    report.status = turned_back ? Status::path_lost : Status::path_unfinished;
     report.detail = text;
     return {from, report};
   }
@@ -102,6 +104,7 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
 
   // The tangent of the path here, the way the last step went.
   Linearization& here = memory.here;
+  here.forget();
   here.evaluate(context, state, report.times);
   report.status = Status::singular;
   if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail))
@@ -190,14 +193,19 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     Iterate guess;
     first_guess(memory.context, guess.state);
     follow_points(memory.context, guess.state, memory.here);
-    find_contacts(memory.context, guess.state, memory.here.contacts());
+    find_contacts(memory.context, guess.state, memory.here.contacts(), memory.alarm);
     return guess;
   };
 
   NewtonRules rules = whole_steps(model);
   rules.limit = std::min(rules.limit, kMostIterations);
-  Reached end = land(memory, ramp, state, guessed(state), rules);
-  StepReport spent = end.report;
+  along(ramp, state)(1.0, memory.context);
+  Reached end;
+  const StepReport first = look_until_found(memory, alarm_distance(memory.context), [&] {
+    end = land(memory, ramp, state, guessed(state), rules);
+    return end.report;
+  });
+  StepReport spent = first;
   if (!sound(end)) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches; ++i) {
@@ -210,17 +218,18 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     }
     if (on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
-      Reached minimum = land(memory, ramp, on.state, guessed(on.state), rules);
-      add_effort(minimum.report, spent);
+      Reached minimum;
+      add_effort(look_until_found(memory, memory.alarm,
+                                  [&] {
+                                    minimum = land(memory, ramp, on.state, guessed(on.state), rules);
+                                    return minimum.report;
+                                  }),
+                 spent);
       if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
     }
   }
   end.report.newton = spent.newton;
   end.report.times = spent.times;
-  if (touches && accepted(end.report.status) && beyond_alarm(memory.context, end.at.state)) {
-    end.report.status = Status::max_iterations;
-    end.report.detail = "it moves further in a step than contacts are looked for";
-  }
   if (!accepted(end.report.status)) return {state, end.report};
   end.at.state.path = {};
   return {std::move(end.at.state), end.report};

@@ -20,8 +20,14 @@ std::string_view to_string(Status status) {
       return "inverted";
     case Status::path_lost:
       return "path_lost";
+    case Status::path_unfinished:
+      return "path_unfinished";
     case Status::rod_exhausted:
       return "rod_exhausted";
+    case Status::inconsistent:
+      return "inconsistent";
+    case Status::passed_through:
+      return "passed_through";
   }
   return "unknown";
 }
@@ -51,9 +57,22 @@ std::string_view explain(Status status) {
     case Status::path_lost:
       return "The path of equilibria turned back for good: there is no equilibrium under the full load, or only one "
              "that a jump leads to. Reduce the load or the motion; the recorded states show how far it went.";
+    case Status::path_unfinished:
+      return "The path of equilibria was followed for as many steps as there are, and goes on from where it ended: "
+             "whether "
+             "there is an equilibrium under the full load is not known. Reduce the load, or reach it in parts with "
+             "`analysis: quasi_static` and a table over time.";
     case Status::rod_exhausted:
       return "The base end of a rod reached a sliding point. Let the rod start further outside the body, or push it in "
              "less.";
+    case Status::inconsistent:
+      return "Constraints contradict each other: no strain and no motion can answer all of them. Drive one of them by "
+             "a "
+             "force instead of a position, leave one out, or add the strains that are missing.";
+    case Status::passed_through:
+      return "Something got to the other side of what stops it, or deep into it, within one step. Take shorter steps, "
+             "or "
+             "move and load it more slowly.";
   }
   return "";
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sinew/sim/clock.hpp"
+#include "sinew/sim/contacts.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
@@ -61,7 +62,7 @@ double begin_step(Memory& memory, const Command& command, double h) {
   double spent = 0.0;
   if (!memory.context.model.pairs.empty()) {  // two readings of the clock cost more than to find none
     const Clock clock(spent);
-    find_contacts(memory.context, iterate.state, memory.here.contacts());
+    find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm);
   }
   return spent;
 }
@@ -86,10 +87,14 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
   StepReport report;
   {
     const Lent lent(state, memory.context.start);
-    const double spent = begin_step(memory, command, h);
-    // What is prescribed stands in the context already.
-    report = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
-    report.times.contact += spent;
+    memory.context.set(command, h);
+    report = look_until_found(memory, alarm_distance(memory.context), [&] {
+      const double spent = begin_step(memory, command, h);
+      // What is prescribed stands in the context already.
+      StepReport own = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
+      own.times.contact += spent;
+      return own;
+    });
     // (Before the state moves: from then on nothing asks for memory.)
     if (rules.inverse && accepted(report.status))
       report.aim = rules.inverse->aim(memory.context.model, memory.iterate.state);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/error/warning.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/status.hpp"
 #include "sinew/solve/coulomb.hpp"
@@ -68,7 +69,8 @@ inline StageTimes& StageTimes::operator+=(const StageTimes& other) {
 /// What came of contacts and of friction in channels, at the last iterate that was looked at.
 struct ContactReport {
   int contacts = 0;             ///< near enough to matter, and points that rub
-  double penetration = 0.0;     ///< [m] of the deepest
+  double penetration = 0.0;     ///< [m] of the deepest, in a pair that was apart when the run began
+  int deepest_pair = -1;        ///< of the model's
   int sweeps = 0, newton = 0;   ///< of solve/coulomb in the whole step
   int unsolved = 0;             ///< of its problems in the step, those not solved to its tolerance
   solve::CoulombResidual left;  ///< of the last one
@@ -110,7 +112,10 @@ struct StepReport {
   bool rotated = false;    ///< a definite tangent stood in for the exact one somewhere
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
   bool redundant = false;  ///< constraint rows depended on each other
-  std::string detail;      ///< names what failed, for people
+  bool at_floor = false;   ///< forces were balanced to their rounding, not to the tolerance (`convergence_of`)
+  bool judged = false;     ///< it was looked for what a user should be warned of (not with Evaluation::motion)
+  std::vector<Warning> warnings;  ///< of an accepted step
+  std::string detail;             ///< names what failed, for people
   ContactReport contact;
   Aim aim;
   StageTimes times;
@@ -138,7 +143,8 @@ inline Workspace make_workspace(const Model& model, int threads = 1) { return Wo
 enum class Evaluation {
   full,
   /// Only what the next step needs, for controllers that need no more: reactions and internal forces stay those of the
-  /// last full step, residual and violation are those before the last linearisation. Half the forces, half the rods.
+  /// last full step, residual and violation are those before the last linearisation, and nothing is warned of
+  /// (`StepReport::judged`). Half the forces, half the rods.
   motion
 };
 

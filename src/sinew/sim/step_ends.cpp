@@ -10,7 +10,7 @@
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/rod_rows.hpp"
-#include "sinew/sim/solid_loads.hpp"
+#include "sinew/sim/work.hpp"
 
 namespace sinew {
 
@@ -75,75 +75,6 @@ void rebase(const rod::Rod& rod, RodState& state) {
   }
 }
 
-/// Work of a load whose factor goes from one value to another.
-double work_of(const RodLoadModel& load, const StepContext& context, const State& next, double before, double after) {
-  const Model& model = context.model;
-  const rod::Rod& rod = model.rods[load.rod].rod;
-  const Placement base = rod_base(model, context.start, load.rod);
-  const auto start = rod::configure(rod, {base, context.start.rods[load.rod].turned}, context.start.rods[load.rod].q);
-  const auto end = rod::configure(rod, base_of(context, next, load.rod), next.rods[load.rod].q);
-  double sum = 0.0;
-  for (const RodLoadModel::At& at : load.at) {
-    const rod::Branch a = rod::branch(start, at.s), b = rod::branch(end, at.s);
-    const Vec3 turn = lie::log(b.R * a.R.transpose());
-    const Vec3 along = load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
-    const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
-    sum += at.weight * (load.force.dot(along) + load.moment.dot(about));
-  }
-  return 0.5 * (before + after) * sum;
-}
-
-double work_of(const SolidLoadModel& load, const StepContext& context, const State& next, double before, double after) {
-  const Eigen::Matrix3Xd &from = context.start.solids[load.solid].x, &to = next.solids[load.solid].x;
-  const Eigen::Matrix3Xd force = before * load_forces(load, from) + after * load_forces(load, to);
-  return 0.5 * force.cwiseProduct(to - from).sum();
-}
-
-/// Work of what holds a solid where it is held to move, and of the frame that its springs pull at.
-double work_of_supports(const StepContext& context, const State& next, int number) {
-  const SolidModel& model = context.model.solids[number];
-  const SolidState &from = context.start.solids[number], &to = next.solids[number];
-  double sum = 0.0;
-  Eigen::Index held = 0;
-  solid::each_held(model.body, [&](int axis, int node) {
-    sum += 0.5 * (from.reaction[held] + to.reaction[held]) * (to.x(axis, node) - from.x(axis, node));
-    ++held;
-  });
-  if (model.springs.size() == 0) return sum;
-  const Placement before = moved(context.model, context.start, model.frame), after = context.moved(model.frame);
-  const Eigen::Matrix3Xd drawn = 0.5 * (spring_stretch(model, before, from.x) + spring_stretch(model, after, to.x));
-  const Eigen::Matrix3Xd carried = ((after.R - before.R) * model.body.rest).colwise() + Vec3(after.p - before.p);
-  return sum - model.springs.cwiseProduct(drawn).cwiseProduct(carried).sum();
-}
-
-/// Work of motors, loads, supports and grips over the step, by the mean of their forces at its ends.
-double work(const StepContext& context, const State& next) {
-  const Model& model = context.model;
-  double sum = 0.0;
-  // What is applied from the start acts in full over the first step. Parts of a step and static paths begin with
-  // nothing.
-  const bool whole = model.scene.analysis != Analysis::statics && context.h > 0.999 * model.scene.time.step;
-  const bool first = context.start.time == 0.0 && whole;
-  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
-    const ActuatorModel& actuator = model.actuators[i];
-    const double force =
-        first && actuator.told_force() ? told_at(actuator.drive, context.start.time) : context.start.actuators[i];
-    const double moved = motor_position(model, next, actuator) - motor_position(model, context.start, actuator);
-    sum += 0.5 * (force + next.actuators[i]) * moved;
-  }
-  for (std::size_t i = 0; i < model.loads.size(); ++i) {
-    const double before = first ? told_at(model.loads[i].factor, context.start.time) : context.start.loads[i];
-    const double after = context.command.loads[i];
-    sum += std::visit([&](const auto& load) { return work_of(load, context, next, before, after); }, model.loads[i].on);
-  }
-  for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
-  for (const Grip& grip : context.command.grips) {
-    const Vec3 from = context.start.solids[grip.solid].x.col(grip.node), to = next.solids[grip.solid].x.col(grip.node);
-    sum += grip.stiffness * (grip.to - 0.5 * (from + to)).dot(to - from);
-  }
-  return sum;
-}
-
 }  // namespace
 
 void write_forces(const Linearization& here, State& next) {
@@ -168,7 +99,7 @@ void finish(const StepContext& context, State& next, Linearization& here) {
   for (std::size_t i = 0; i < next.actuators.size(); ++i)
     next.actuators[i] = motor_force(model, context.command, next, static_cast<int>(i));
   next.loads = context.command.loads;
-  next.energies.work += work(context, next);
+  next.energies.work += work(context, next, here.contacts().touches);
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
     if (model.rods[i].floats) rebase(model.rods[i].rod, next.rods[i]);
   }
@@ -231,10 +162,11 @@ double inertia_of(const StepContext& context) {
   return mass * context.rate * context.rate;
 }
 
-bool balanced(const Model& model, const Linearization& here, double stiffness) {
+Convergence convergence_of(const Model& model, const Linearization& here, double stiffness) {
   const double tolerance = model.scene.newton.tolerance;
   const double rounding = 1e-14 * stiffness * model.size;
-  return here.largest() <= tolerance * here.scale() + rounding && here.violation() <= tolerance * model.size;
+  const bool forces = here.largest() <= tolerance * here.scale() + rounding;
+  return {forces && here.violation() <= tolerance * model.size, forces && here.largest() > tolerance * here.scale()};
 }
 
 }  // namespace sinew

@@ -35,8 +35,21 @@ std::string broken_cell(const Model& model, const State& state);
 /// [N/m] what holds the rods in their place in the step: their masses over h^2.
 double inertia_of(const StepContext& context);
 
-/// Forces and rows meet the scene's tolerance. Forces are known to the rounding of positions times `stiffness` [N/m]
-/// only, whatever they add up to.
-bool balanced(const Model& model, const Linearization& here, double stiffness);
+/// What `converged` means of forces and rows, here and nowhere else:
+///
+///     largest unbalanced force <= tolerance x largest force + 1e-14 x stiffness x size,   violation <= tolerance x
+///     size,
+///
+/// with the scene's `newton.tolerance` (1e-9), the largest force that acts anywhere, `stiffness` [N/m] the largest
+/// diagonal entry of the volumes' matrices and of inertia over h^2, and the size of the scene. The second term of
+/// forces is their floor: positions are known to 1e-16 of the size, so that forces are not known better than that times
+/// a stiffness, whatever they add up to. Where it decides, the relative residual may be anything (`at_floor`). Contacts
+/// come besides
+/// (`Linearization::contact_error`).
+struct Convergence {
+  bool met = false;
+  bool at_floor = false;  ///< forces meet their floor, not the tolerance
+};
+Convergence convergence_of(const Model& model, const Linearization& here, double stiffness);
 
 }  // namespace sinew

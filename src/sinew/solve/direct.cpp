@@ -255,6 +255,10 @@ bool CoupledFactor::factor_symmetric() {
     most = std::max(most, pivot);
   }
   if (most > 0.0 && !(smallest > 1e-14 * most)) return false;
+  replaced_ = false;
+  for (int i = 0; i < size; ++i)
+    replaced_ |= least_[static_cast<std::size_t>(i)] != 0.0 &&
+                 std::abs(symmetric_.pivot(i)) <= std::abs(least_[static_cast<std::size_t>(i)]);
   kind_ = Kind::symmetric;
   joined_ = false;
   return true;
@@ -279,7 +283,7 @@ void CoupledFactor::factor_general(bool join_chains) {
 
 /// The border with all chains eliminated.
 template <class Border>
-void CoupledFactor::fill(Border& border) {
+void CoupledFactor::fill(Border& border) const {
   fill_bare(*problem_, border);
   for (std::size_t n = 0; n < problem_->chains.size(); ++n) {
     const ChainPart& part = problem_->chains[n];
@@ -528,10 +532,25 @@ int CoupledFactor::negative() const {
   if (!joined_) {
     for (const linalg::ChainFactor& factor : factors_) count += factor.negative();
   }
-  if (kind_ == Kind::symmetric) return count + symmetric_.negative();
+  if (kind_ == Kind::symmetric) return count + (replaced_ ? negative_of_border() : symmetric_.negative());
   if (K_.rows() == 0 || !K_.allFinite()) return count;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
   return count + static_cast<int>((border.eigenvalues().array() < 0.0).count());
+}
+
+/// By its eigenvalues, scaled: those that are zero but for rounding belong to motions that nothing resists, and count
+/// as none.
+int CoupledFactor::negative_of_border() const {
+  constexpr int kLargest = 600;  // beyond that it takes seconds, and the factor's pivots have to do
+  constexpr double kZero = 1e-12;
+  const int size = border_size(*problem_);
+  if (size > kLargest) return symmetric_.negative();
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
+  Dense border(K);
+  fill(border);
+  equilibrate(K);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(K, Eigen::EigenvaluesOnly);
+  return static_cast<int>((own.eigenvalues().array() < -kZero).count());
 }
 
 CoupledSolution solve_direct(const CoupledProblem& problem) {

@@ -56,7 +56,9 @@ class CoupledFactor {
   bool polish(const RightSide& right, CoupledSolution& solution);
 
   /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric. An equilibrium is stable where there are
-  /// no more of them than rows. Costs an eigenvalue problem of the border where that has no symmetric factor.
+  /// no more of them than rows. Costs an eigenvalue problem of the border where that has no symmetric factor, or one
+  /// with pivots that vanished and were replaced: what is left of others beside them may be rounding, whose sign says
+  /// nothing.
   int negative() const;
 
  private:
@@ -65,7 +67,8 @@ class CoupledFactor {
   bool factor_symmetric();
   void factor_general(bool join_chains);
   template <class Border>
-  void fill(Border& border);
+  void fill(Border& border) const;
+  int negative_of_border() const;
   void weigh();
   void solve_once(const RightSide& right, CoupledSolution& solution, Part wanted = Part::all);
   void find_strains(const RightSide& right, CoupledSolution& solution);
@@ -78,8 +81,9 @@ class CoupledFactor {
 
   const CoupledProblem* problem_ = nullptr;
   Kind kind_ = Kind::general;
-  bool chains_ = false;  ///< all of them have pivots
-  bool joined_ = false;  ///< chains are written out in the border
+  bool chains_ = false;    ///< all of them have pivots
+  bool joined_ = false;    ///< chains are written out in the border
+  bool replaced_ = false;  ///< pivots of the symmetric factor vanished
   std::vector<linalg::ChainFactor> factors_;
   std::vector<linalg::ChainFactor::Condensed> condensed_;
 

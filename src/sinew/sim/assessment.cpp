@@ -1,0 +1,264 @@
+#include "sinew/sim/assessment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sinew/sim/contact_places.hpp"
+#include "sinew/sim/places.hpp"
+#include "sinew/sim/signals.hpp"
+
+namespace sinew {
+
+namespace {
+
+constexpr double kBeyondBearing = 1e6;         ///< times Model::bearing
+constexpr double kLinearisedResidual = 0.05;   ///< of the largest force: of a step of `newton: n`
+constexpr double kLinearisedViolation = 1e-3;  ///< of the scene's size: the same
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Collects the warnings of one step.
+class Warnings {
+ public:
+  Warnings(double time, std::vector<Warning>& list) : time_(time), list_(list) {}
+  void add(Warning warning) {
+    warning.time = time_;
+    warning.steps = 1;
+    list_.push_back(std::move(warning));
+  }
+
+ private:
+  double time_;
+  std::vector<Warning>& list_;
+};
+
+void assess_cables(const Model& model, const State& state, Warnings& warnings) {
+  const double rounding = 1e-9 * model.bearing;
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const ActuatorModel& own = model.actuators[i];
+    const double force = state.actuators[i];
+    if (own.tendon && force < -rounding) {
+      warnings.add({.code = "tendon_pushes",
+                    .where = "actuators." + own.name,
+                    .message = "the tendon pushes with " + number(-force) + " N; a real one would go slack",
+                    .remedy = "drive it by `tension`, or draw in more of it",
+                    .value = -force,
+                    .limit = 0.0,
+                    .unit = "N"});
+    }
+    // A base that is pulled along -x draws its rod out of the body: a thread then, which cannot push to speak of.
+    if (own.tendon || own.turns() || own.axis > 0 || own.line.rod < 0 || !(force < -rounding)) continue;
+    const RodModel& rod = model.rods[own.line.rod];
+    const bool slides = std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& point) {
+      return point.line == own.line && point.unknown >= 0;
+    });
+    const double length = rod.rod.length(), radius = rod::radius_at(rod.rod.profile, 0.0);
+    const rod::Mat6 stiffness = rod::stiffness_at(rod.rod.profile, 0.0);
+    const double buckles = M_PI * M_PI * std::min(stiffness(1, 1), stiffness(2, 2)) / (length * length);
+    if (!slides || radius > 0.02 * length || -force < 1e-3 * buckles) continue;
+    warnings.add({.code = "thread_pushes",
+                  .where = "actuators." + own.name,
+                  .message = "rods." + rod.name + " is as thin as a thread and pushes with " + number(-force) +
+                             " N; a real one would go slack",
+                  .remedy = "pull it, by force instead of displacement if need be",
+                  .value = -force,
+                  .limit = 1e-3 * buckles,
+                  .unit = "N"});
+  }
+  for (const GeometricCableModel& cable : model.cables) {
+    const double tension = state.lambda[cable.length_row];
+    if (!(tension < -rounding)) continue;
+    warnings.add({.code = "cable_pushes",
+                  .where = "rods." + cable.name,
+                  .message = "the geometric cable pushes with " + number(-tension) + " N; a real one would go slack",
+                  .remedy = "pull it, by force instead of displacement if need be",
+                  .value = -tension,
+                  .limit = 0.0,
+                  .unit = "N"});
+  }
+}
+
+void assess_couplings(const Model& model, const State& state, Warnings& warnings) {
+  for (std::size_t i = 0; i < model.couplings.size(); ++i) {
+    bool any = false, on = false;
+    for (std::size_t k = 0; k < model.points.size(); ++k) {
+      if (model.points[k].coupling != static_cast<int>(i)) continue;
+      any = true;
+      on |= state.points[k].on;
+    }
+    if (any && !on) {
+      warnings.add({.code = "rod_left_body",
+                    .where = "couplings." + std::to_string(i),
+                    .message = "the rod has left the body, none of its points is on it any more",
+                    .remedy = "draw it out less, or anchor its tip"});
+    }
+  }
+}
+
+void assess_contacts(const Model& model, bool fixed, const StepReport& step, Warnings& warnings) {
+  const ContactReport& contact = step.contact;
+  const double limit = (fixed ? 1e-4 : 1e-6) * model.size;
+  if (contact.deepest_pair >= 0 && contact.penetration > limit) {
+    const PairModel& pair = model.pairs[contact.deepest_pair];
+    warnings.add({.code = "penetration",
+                  .where = "contact",
+                  .message = name_of(model, pair.a) + " and " + name_of(model, pair.b) + " overlap by " +
+                             number(1e3 * contact.penetration) + " mm",
+                  .remedy = "take shorter steps" + std::string(fixed ? ", or leave `newton` out" : ""),
+                  .value = contact.penetration,
+                  .limit = limit,
+                  .unit = "m"});
+  }
+  const double left = std::max({contact.left.complementarity, contact.left.cone, contact.left.dissipation});
+  if (fixed && contact.unsolved > 0) {
+    warnings.add(
+        {.code = "contact_unsolved",
+         .where = "contact",
+         .message = "forces of contacts miss Signorini's and Coulomb's laws by " + number(left) + " of the largest",
+         .remedy = "take shorter steps, or leave `newton` out",
+         .value = left,
+         .limit = 1e-10});
+  }
+}
+
+void assess_linearisation(const Model& model, const StepReport& step, Warnings& warnings) {
+  if (step.residual > kLinearisedResidual) {
+    warnings.add(
+        {.code = "linearisation_off",
+         .where = "newton",
+         .message = "the step leaves " + number(100.0 * step.residual) + " % of the largest force unbalanced",
+         .remedy = "take shorter steps, or leave `newton: " + std::to_string(model.scene.newton.iterations) + "` out",
+         .value = step.residual,
+         .limit = kLinearisedResidual});
+  }
+  if (step.violation > kLinearisedViolation * model.size) {
+    warnings.add(
+        {.code = "constraints_off",
+         .where = "newton",
+         .message = "constraints are missed by " + number(1e3 * step.violation) + " mm",
+         .remedy = "take shorter steps, or leave `newton: " + std::to_string(model.scene.newton.iterations) + "` out",
+         .value = step.violation,
+         .limit = kLinearisedViolation * model.size,
+         .unit = "m"});
+  }
+}
+
+void assess_redundancy(const Model& model, const Linearization& here, Warnings& warnings) {
+  for (const RedundantRows& own : here.reduced().redundant) {
+    // Those of the start are told by the model, whatever posture adds to them.
+    const bool known = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const std::vector<int>& rows) {
+      return std::any_of(rows.begin(), rows.end(),
+                         [&own](int row) { return std::binary_search(own.rows.begin(), own.rows.end(), row); });
+    });
+    if (known) continue;
+    warnings.add({.code = "redundant_constraints",
+                  .where = name_of_rows(model, own.rows),
+                  .message = "constraint rows have come to depend on each other in this posture; of the forces that do "
+                             "the same, the smallest are taken",
+                  .remedy = remedy_of_rows(model, own.rows),
+                  .value = static_cast<double>(own.null.cols())});
+  }
+}
+
+}  // namespace
+
+void assess(const StepContext& context, const Linearization& here, const State& next, StepReport& report) {
+  const Model& model = context.model;
+  const bool fixed = report.status == Status::linearized;
+  Warnings warnings(next.time, report.warnings);
+  assess_cables(model, next, warnings);
+  assess_couplings(model, next, warnings);
+  assess_contacts(model, fixed, report, warnings);
+  if (fixed) assess_linearisation(model, report, warnings);
+  assess_redundancy(model, here, warnings);
+  if (report.unstable) {
+    warnings.add({.code = "unstable",
+                  .where = "",
+                  .message = "the equilibrium is unstable, a real body would have buckled",
+                  .remedy = "a small side load or shorter steps show where it goes"});
+  }
+  if (model.scene.analysis == Analysis::modal) return;  // (what a mode's picture does is no state)
+  if (const int folded = count_folded(model, next); folded > 0) {
+    warnings.add(
+        {.code = "elements_inverted",
+         .where = "solids",
+         .message = std::to_string(folded) + " elements are flat or inside out: this is no state of a real body",
+         .remedy = "look at volume_ratio in ParaView; load it less or slower, or give a finer mesh or another law",
+         .value = static_cast<double>(folded),
+         .limit = 0.0});
+  }
+}
+
+std::string beyond_bearing(const Model& model, const State& state) {
+  const double limit = kBeyondBearing * model.bearing;
+  for (const ContactState& contact : state.contacts) {
+    if (contact.force.norm() > limit) {
+      const PairModel& pair = model.pairs[contact.pair];
+      return name_of(model, pair.a) + " and " + name_of(model, pair.b) + " press with " + number(contact.force.norm()) +
+             " N, more than anything here could bear: no strain and no motion answers";
+    }
+  }
+  if (state.lambda.size() == 0 || !(state.lambda.cwiseAbs().maxCoeff() > limit)) return {};
+  std::vector<int> rows;
+  for (Eigen::Index row = 0; row < state.lambda.size(); ++row) {
+    if (std::abs(state.lambda[row]) > limit) rows.push_back(static_cast<int>(row));
+  }
+  return name_of_rows(model, rows) + ": forces of " + number(state.lambda.cwiseAbs().maxCoeff()) +
+         " N, more than anything here could bear; " + remedy_of_rows(model, rows);
+}
+
+namespace {
+
+/// Kinetic energy of rods and rigid bodies, which contacts move at once, and the potential of their weight.
+struct Loose {
+  double kinetic = 0.0, weight = 0.0;
+};
+Loose loose_energy(const Model& model, const State& state) {
+  Loose own;
+  const Vec3& g = model.scene.gravity;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    own.kinetic += rigid::kinetic_energy(model.bodies[i].body, state.bodies[i]);
+    own.weight -= model.bodies[i].body.mass * g.dot(state.bodies[i].p);
+  }
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    const std::vector<rod::MassPoint>& masses = model.rods[i].rod.masses;
+    for (std::size_t m = 0; m < masses.size(); ++m) {
+      const auto column = static_cast<Eigen::Index>(m);
+      own.kinetic += 0.5 * masses[m].mass * state.rods[i].velocity.col(column).squaredNorm();
+      own.weight -= masses[m].mass * g.dot(state.rods[i].masses.col(column));
+    }
+  }
+  return own;
+}
+
+}  // namespace
+
+std::string contact_adds_energy(const StepContext& context, const State& next) {
+  constexpr double kGain = 1e-3;
+  const Model& model = context.model;
+  if (context.rate == 0.0 || next.contacts.empty()) return {};
+  // What overlaps at the start of a run is lifted apart.
+  if (std::any_of(model.pairs.begin(), model.pairs.end(), [](const PairModel& pair) { return pair.depth > 0.0; }))
+    return {};
+  // Most steps are done with here: nothing that is loose has become faster than by falling.
+  const Loose before = loose_energy(model, context.start), after = loose_energy(model, next);
+  if (after.kinetic <= before.kinetic + std::max(0.0, before.weight - after.weight)) return {};
+  const EnergyBalance from = energy_balance(model, context.start), to = energy_balance(model, next);
+  const double gain = to.total() - from.total() - (next.energies.work - context.start.energies.work);
+  const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
+  if (!(gain > kGain * size) || !(size > 1e-14 * model.bearing * model.size)) return {};
+  return "contacts have added " + number(gain) + " J, " + number(gain / size) + " of the kinetic and elastic energy";
+}
+
+std::string describe_contradiction(const Model& model, const RedundantRows& rows, const Eigen::VectorXd& c) {
+  const std::vector<int> which = rows.contradicting(c);
+  return name_of_rows(model, which) + " contradict each other by " + number(1e3 * rows.contradiction(c)) + " mm; " +
+         remedy_of_rows(model, which);
+}
+
+}  // namespace sinew

@@ -1,0 +1,205 @@
+#include "sinew/sim/contact_passage.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "sinew/lie/rotation.hpp"
+
+namespace sinew {
+
+namespace {
+
+using Kind = Collider::Kind;
+using contact::Simplex;
+
+/// Part of the thinner of two by which they may overlap.
+constexpr double kDeepest = 0.25;
+
+/// Both ends of a step.
+struct StepMotion {
+  const Moment &start, &end;
+};
+
+contact::Pose between(const contact::Pose& from, const contact::Pose& to, double t) {
+  return {from.R * lie::exp(t * lie::log(from.R.transpose() * to.R)), from.p + t * (to.p - from.p)};
+}
+
+/// A part of an object on its way.
+Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
+  Simplex own = side.local;
+  if (is_rigid(side.on)) {
+    const contact::Pose pose = between(motion.start.pose(side.on), motion.end.pose(side.on), t);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] = pose * own.x[i];
+    own.normal = pose.R * own.normal;
+    own.rim = pose.R * own.rim;
+    return own;
+  }
+  own = motion.start.placed(side);
+  const Simplex to = motion.end.placed(side);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] += t * (to.x[i] - own.x[i]);
+  return own;
+}
+
+/// Distance of two parts less their thickness; below zero only where they overlap now, wherever they came from: past
+/// the rim of a triangle it has no inside, and the plane of a face ends with its shape.
+double separation(const StepMotion& motion, const ContactState& own, double t) {
+  const Simplex a = placed(motion, own.a, t);
+  const Model& model = motion.start.model;
+  if (a.kind == Simplex::Kind::point && is_rigid(own.b.on) && !mesh_of(model, own.b.on)) {
+    const contact::Pose pose = between(motion.start.pose(own.b.on), motion.end.pose(own.b.on), t);
+    const Vec3 local = pose.R.transpose() * (a.x[0] - pose.p);
+    return contact::nearest(contact::point_at(local, a.radius), contact::nearest_part(shape_of(model, own.b.on), local))
+        .gap;
+  }
+  const Simplex b = placed(motion, own.b, t);
+  const contact::Nearest found = contact::nearest(a, b);
+  if (b.kind == Simplex::Kind::triangle && std::min({found.b[0], found.b[1], found.b[2]}) > 1e-9) return found.gap;
+  Vec3 apart = Vec3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.corners()); ++i) apart += found.a[i] * a.x[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.corners()); ++i) apart -= found.b[i] * b.x[i];
+  return apart.norm() - a.radius - b.radius;
+}
+
+/// How deep two rigid shapes overlap on their way; 0 where they are apart.
+double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double t) {
+  std::vector<contact::Meeting> meetings;
+  const Model& model = motion.start.model;
+  const contact::Pose a = between(motion.start.pose(pair.a), motion.end.pose(pair.a), t),
+                      b = between(motion.start.pose(pair.b), motion.end.pose(pair.b), t);
+  contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, 0.0, meetings);
+  double deepest = 0.0;
+  for (const contact::Meeting& own : meetings) {
+    const auto in_world = [](const contact::Pose& pose, Simplex part) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(part.corners()); ++i) part.x[i] = pose * part.x[i];
+      part.normal = pose.R * part.normal;
+      part.rim = pose.R * part.rim;
+      return part;
+    };
+    const contact::Pose &of_a = own.swapped ? b : a, &of_b = own.swapped ? a : b;
+    deepest = std::max(deepest, -contact::nearest(in_world(of_a, own.a), in_world(of_b, own.b)).gap);
+  }
+  return deepest;
+}
+
+/// The furthest that anything of an object moves.
+double farthest(const StepMotion& motion, const Collider& own) {
+  const Model& model = motion.start.model;
+  double most = 0.0;
+  switch (own.kind) {
+    case Kind::solid:
+      most =
+          (motion.end.state.solids[own.number].x - motion.start.state.solids[own.number].x).colwise().norm().maxCoeff();
+      break;
+    case Kind::rod:
+      for (const double s : model.rods[own.number].touching) {
+        most = std::max(
+            most,
+            (rod::position(motion.end.rods[own.number], s) - rod::position(motion.start.rods[own.number], s)).norm());
+      }
+      break;
+    case Kind::body:
+    case Kind::obstacle: {
+      const contact::Pose from = motion.start.pose(own), to = motion.end.pose(own);
+      const double turn = lie::log(from.R.transpose() * to.R).norm();
+      const double far = contact::reach(shape_of(model, own), Eigen::Matrix3d::Identity()).norm();
+      most = (to.p - from.p).norm() + (turn > 0.0 ? turn * std::min(far, model.size) : 0.0);
+      break;
+    }
+  }
+  return most;
+}
+
+constexpr int kPlaces = 64;  ///< at most so many on the way are looked at
+
+/// The deepest overlap [m] of two parts on their way, beyond the one they start with; 0 where they stay apart.
+double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed) {
+  const double before = std::min(0.0, separation(motion, own, 0.0));
+  double deepest = 0.0;
+  for (double t = 0.0;;) {
+    const double gap = separation(motion, own, t);
+    deepest = std::max(deepest, before - gap);
+    if (t >= 1.0) return deepest;
+    t = std::min(1.0, t + std::max(gap / speed, 1.0 / kPlaces));
+  }
+}
+
+/// The same of two shapes.
+double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
+  const int places = std::clamp(static_cast<int>(std::ceil(4.0 * speed / thin)), 1, kPlaces);
+  const double before = overlap_of_shapes(motion, pair, 0.0);
+  double deepest = 0.0;
+  for (int i = 1; i <= places; ++i)
+    deepest = std::max(deepest, overlap_of_shapes(motion, pair, static_cast<double>(i) / places) - before);
+  return deepest;
+}
+
+}  // namespace
+
+std::string name_of_pair(const Model& model, int pair) {
+  return name_of(model, model.pairs[pair].a) + " and " + name_of(model, model.pairs[pair].b);
+}
+
+Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, double alarm) {
+  Passage found;
+  const Model& model = context.model;
+  if (model.pairs.empty()) return found;
+  if (room.touches.size() == next.contacts.size()) {
+    for (std::size_t i = 0; i < room.touches.size(); ++i) {
+      const int pair = next.contacts[i].pair;
+      const double depth = overlap_of(room, i);
+      if (!(depth > std::max(kDeepest * room.thin[pair], found.depth))) continue;
+      found.kind = Passage::Kind::passed;
+      found.pair = pair;
+      found.depth = depth;
+    }
+  }
+  std::vector<rod::Configuration> rods;
+  configure_touching(model, context.bases, next, rods);
+  const std::vector<Placement> frames = frames_at(model, context.start.time);
+  const Moment start{model, context.start, frames, room.start};
+  const Moment end{model, next, context.displacement, rods};
+  const StepMotion motion{start, end};
+  std::map<std::pair<Kind, int>, double> moved;
+  const auto motion_of = [&](const Collider& own) {
+    const auto [place, fresh] = moved.try_emplace({own.kind, own.number}, 0.0);
+    if (fresh) place->second = farthest(motion, own);
+    return place->second;
+  };
+  std::vector<ContactState> candidates;
+  for (std::size_t i = 0; i < model.pairs.size(); ++i) {
+    const PairModel& pair = model.pairs[i];
+    const double speed = motion_of(pair.a) + motion_of(pair.b);
+    found.alarm = std::max(found.alarm, speed);
+    const double thin = room.thin[i];
+    // Two that were apart have to move by the thickness of both to get to each other's other side.
+    if (speed <= std::min(alarm, 0.5 * thin)) continue;
+    const auto meets = [&](bool listed, double depth) {
+      const double most = listed ? kDeepest * thin : 1e-6 * model.size;
+      if (!(depth > most) || depth <= found.depth) return;
+      if (listed && found.kind == Passage::Kind::missed) return;
+      found.kind = listed ? Passage::Kind::passed : Passage::Kind::missed;
+      found.pair = static_cast<int>(i);
+      found.depth = depth;
+    };
+    const auto listed = [&](const auto& like) {
+      return std::any_of(room.found.begin(), room.found.end(), [&](const auto& own) { return like(own); });
+    };
+    if (are_shapes(model, pair)) {
+      meets(listed([&](const auto& own) { return own.first == static_cast<int>(i); }),
+            deepest_of_shapes(motion, pair, speed, thin));
+      continue;
+    }
+    candidates.clear();
+    search(start, speed, std::max(pair.depth, 1e-3 * model.size), room.surfaces, static_cast<int>(i), candidates);
+    for (const ContactState& own : candidates) {
+      const std::pair<int, std::uint64_t> key(own.pair, own.part);
+      meets(std::binary_search(room.found.begin(), room.found.end(), key), deepest_of_parts(motion, own, speed));
+    }
+  }
+  return found;
+}
+
+}  // namespace sinew

@@ -1,0 +1,35 @@
+// The second look at contacts, once a step has been made: whether something met, or went through, what it was not
+// looked for beforehand.
+//
+// Candidates are found before a step, within an alarm distance that follows from velocities. Forces, actuators and
+// frames may move things further. So the step is looked at again along the motion that it made: parts go from where
+// they were to where they are (nodes and points of rods straight, rigid bodies by the screw-free interpolation of place
+// and turn), and conservative advancement finds how deep any two come on the way,
+//
+//     t <- t + gap(t) / (how far the two move towards each other at most).
+//
+// A pair that meets and was no candidate makes the step be done again with a longer alarm distance; one that was a
+// candidate and still comes deeper than a quarter of the thinner of the two makes it be refused.
+#pragma once
+
+#include "sinew/sim/contacts.hpp"
+
+namespace sinew {
+
+/// What the second look found.
+struct Passage {
+  enum class Kind { none, missed, passed };
+  Kind kind = Kind::none;
+  int pair = -1;       ///< of the model's, the deepest
+  double depth = 0.0;  ///< [m] of its overlap on the way
+  double alarm = 0.0;  ///< [m] within which contacts are to be looked for to find all that may meet
+};
+
+/// Looks along the motion from the start of a step to `next`. `alarm` is that within which `room` was filled. Costs
+/// little where nothing moved by more than that, or by the thickness of what may meet.
+Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, double alarm);
+
+/// "a and b", as a message names a pair.
+std::string name_of_pair(const Model& model, int pair);
+
+}  // namespace sinew

@@ -1,0 +1,499 @@
+#include "sinew/sim/redundancy.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "sinew/sim/rod_rows.hpp"
+
+namespace sinew {
+
+namespace {
+
+constexpr double kZero = 1e-8;  ///< singular values of scaled rows that count as zero
+constexpr double kSuspect =
+    1e-11;  ///< pivots of their Gram matrix that are looked at more closely (singular values squared)
+constexpr double kPrivate = 1e-2;         ///< entries that make a row independent where no other row has its column
+constexpr Eigen::Index kMostRows = 3000;  ///< beyond this a dense rank would take minutes: none is looked for
+
+struct Entry {
+  int column = 0;
+  double value = 0.0;
+};
+using Row = std::vector<Entry>;
+
+/// Row of each auxiliary unknown z (what attachments follow) that holds it, by its number among them: c = is - z.
+std::vector<int> rows_of_followed(const Model& model) {
+  std::vector<int> rows(static_cast<std::size_t>(model.followed), -1);
+  for (const TieModel& tie : model.ties) {
+    if (!tie.body()) continue;
+    for (int i = 0; i < (tie.directors ? 12 : 3); ++i)
+      rows[static_cast<std::size_t>(tie.unknown - model.first_followed + i)] = tie.body_row + i;
+  }
+  return rows;
+}
+
+/// Jacobians of some rows by all free coordinates, columns scaled by lever arms so that entries are near one. Rows that
+/// hold auxiliary unknowns, one each, are substituted in those that use them.
+class RowJacobian {
+ public:
+  RowJacobian(const Model& model, const State& iterate, const solve::CoupledProblem& problem, std::vector<int> rows)
+      : model_(model), holds_(rows_of_followed(model)), rows_(std::move(rows)) {
+    std::vector<int> wanted = rows_;
+    wanted.insert(wanted.end(), holds_.begin(), holds_.end());
+    slot_.assign(static_cast<std::size_t>(model.rows), -1);
+    for (const int row : wanted) {
+      if (slot_[row] >= 0) continue;
+      slot_[row] = static_cast<int>(all_.size());
+      all_.emplace_back();
+    }
+    gather(iterate, problem);
+    substitute();
+  }
+
+  const std::vector<int>& rows() const { return rows_; }
+  const Row& of(std::size_t i) const { return all_[slot_[rows_[i]]]; }
+  /// What a row takes of each row that holds an auxiliary unknown.
+  const std::vector<Entry>& substituted(std::size_t i) const { return used_[i]; }
+
+ private:
+  void add(int row, int column, double value) {
+    if (slot_[row] >= 0 && value != 0.0) all_[slot_[row]].push_back({column, value});
+  }
+
+  void gather(const State& iterate, const solve::CoupledProblem& problem) {
+    const auto nz = static_cast<int>(problem.r.size());
+    for (const auto& [row, column, value] : problem.G) add(row, column, value / model_.arms[column]);
+    int first = nz;
+    for (std::size_t n = 0; n < problem.chains.size(); ++n) {
+      const solve::ChainPart& part = problem.chains[n];
+      const Eigen::VectorXd levers = strain_levers(model_.rods[n].rod);
+      const auto spread = [&](int row, const Eigen::VectorXd& along) {
+        for (Eigen::Index c = 0; c < along.size(); ++c) add(row, first + static_cast<int>(c), along[c] / levers[c]);
+      };
+      for (std::size_t i = 0; i < part.at.size(); ++i) {
+        const int row = part.at[i] - nz;
+        if (row < 0 || slot_[row] < 0) continue;
+        spread(row, linalg::dense(part.chain, part.attachments[i]));
+        for (Eigen::Index b = 0; b < part.base.cols(); ++b) {
+          const int z = part.first_base + static_cast<int>(b);
+          add(row, z, part.base.col(b).dot(part.attachments[i].g) / model_.arms[z]);
+        }
+      }
+      for (std::size_t f = 0; f < part.whole_at.size(); ++f)
+        spread(part.whole_at[f] - nz, part.whole.col(static_cast<Eigen::Index>(f)));
+      first += part.chain.coordinates();
+    }
+    std::vector<int> first_of(model_.solids.size());
+    for (std::size_t i = 0; i < model_.solids.size(); ++i) {
+      first_of[i] = first;
+      first += model_.solids[i].body.unknowns;
+    }
+    for (const SolidRow& row : model_.solid_rows) {
+      if (slot_[row.row] < 0 || (row.point >= 0 && !iterate.points[row.point].on)) continue;
+      const solid::Body& body = model_.solids[row.solid].body;
+      const auto nodes = body.cells[row.where.element].nodes();
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int unknown = body.unknown(axis, nodes[k]);
+          if (unknown >= 0)
+            add(row.row + axis, first_of[row.solid] + unknown, -row.where.weights[static_cast<Eigen::Index>(k)]);
+        }
+      }
+    }
+    for (Row& row : all_) sum_up(row);
+  }
+
+  static void sum_up(Row& row) {
+    std::stable_sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (kept > 0 && row[kept - 1].column == row[i].column) {
+        row[kept - 1].value += row[i].value;
+      } else {
+        row[kept++] = row[i];
+      }
+    }
+    row.resize(kept);
+  }
+
+  void substitute() {
+    used_.resize(rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      Row& own = all_[slot_[rows_[i]]];
+      Row rest;
+      for (const Entry& entry : own) {
+        const int followed = entry.column - model_.first_followed;
+        if (followed < 0 || followed >= model_.followed) {
+          rest.push_back(entry);
+          continue;
+        }
+        const int holding = holds_[static_cast<std::size_t>(followed)];
+        used_[i].push_back({holding, entry.value});
+        for (const Entry& other : all_[slot_[holding]]) {
+          if (other.column != entry.column) rest.push_back({other.column, -entry.value * other.value});
+        }
+      }
+      sum_up(rest);
+      own = std::move(rest);
+    }
+  }
+
+  const Model& model_;
+  std::vector<int> holds_, rows_, slot_;
+  std::vector<Row> all_;
+  std::vector<std::vector<Entry>> used_;
+};
+
+double norm_of(const Row& row) {
+  double sum = 0.0;
+  for (const Entry& entry : row) sum += entry.value * entry.value;
+  return std::sqrt(sum);
+}
+
+/// The rows that may depend on others: what is left once every row that has a column to itself is taken away, again and
+/// again. Rows of length zero are left.
+std::vector<std::size_t> entangled(const RowJacobian& J) {
+  const std::size_t count = J.rows().size();
+  std::map<int, std::vector<std::size_t>> users;
+  std::vector<double> norms(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    norms[i] = norm_of(J.of(i));
+    for (const Entry& entry : J.of(i)) {
+      if (std::abs(entry.value) > 1e-12 * norms[i]) users[entry.column].push_back(i);
+    }
+  }
+  std::map<int, std::size_t> open;  // users of a column that are still there
+  for (const auto& [column, rows] : users) open[column] = rows.size();
+  std::vector<bool> gone(count, false);
+  std::vector<std::size_t> waiting(count);
+  std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+  while (!waiting.empty()) {
+    const std::size_t i = waiting.back();
+    waiting.pop_back();
+    if (gone[i] || norms[i] <= kZero) continue;
+    const bool own = std::any_of(J.of(i).begin(), J.of(i).end(), [&](const Entry& entry) {
+      return std::abs(entry.value) > kPrivate * norms[i] && open[entry.column] == 1;
+    });
+    if (!own) continue;
+    gone[i] = true;
+    for (const Entry& entry : J.of(i)) {
+      if (!(std::abs(entry.value) > 1e-12 * norms[i]) || --open[entry.column] != 1) continue;
+      for (const std::size_t other : users[entry.column]) {
+        if (!gone[other]) waiting.push_back(other);
+      }
+    }
+  }
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!gone[i]) left.push_back(i);
+  }
+  return left;
+}
+
+/// Columns that some rows use, in their order, as rows of a dense matrix: J^T, each column scaled to length 1; zero
+/// rows stay zero. `norms` of the rows.
+Eigen::MatrixXd dense_transposed(const RowJacobian& J, const std::vector<std::size_t>& rows, Eigen::VectorXd& norms) {
+  std::map<int, Eigen::Index> place;
+  for (const std::size_t i : rows) {
+    for (const Entry& entry : J.of(i)) place.try_emplace(entry.column, static_cast<Eigen::Index>(place.size()));
+  }
+  Eigen::MatrixXd dense =
+      Eigen::MatrixXd::Zero(std::max<Eigen::Index>(1, std::ssize(place)), static_cast<Eigen::Index>(rows.size()));
+  norms.resize(dense.cols());
+  for (Eigen::Index k = 0; k < dense.cols(); ++k) {
+    const Row& row = J.of(rows[static_cast<std::size_t>(k)]);
+    norms[k] = norm_of(row);
+    if (!(norms[k] > kZero)) continue;
+    for (const Entry& entry : row) dense(place[entry.column], k) = entry.value / norms[k];
+  }
+  return dense;
+}
+
+/// Combinations n of scaled rows with J^T n = 0, a column each.
+Eigen::MatrixXd null_space(const Eigen::MatrixXd& transposed) {
+  const Eigen::Index count = transposed.cols();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(transposed);
+  const auto& R = qr.matrixR();
+  Eigen::Index rank = 0;
+  while (rank < std::min(transposed.rows(), count) && std::abs(R(rank, rank)) > kZero) ++rank;
+  Eigen::MatrixXd null(count, count - rank);
+  if (rank == count) return null;
+  null.topRows(rank) = -R.topLeftCorner(rank, rank)
+                            .template triangularView<Eigen::Upper>()
+                            .solve(Eigen::MatrixXd(R.block(0, rank, rank, count - rank)));
+  null.bottomRows(count - rank).setIdentity();
+  return qr.colsPermutation() * null;
+}
+
+/// Rows that hold auxiliary unknowns are in no group by themselves: one each, they are independent.
+std::vector<int> told_rows(const Model& model, const State& iterate) {
+  std::vector<bool> left_out(static_cast<std::size_t>(model.rows), false);
+  for (const int row : rows_of_followed(model)) left_out[row] = true;
+  for (std::size_t k = 0; k < model.points.size(); ++k) {
+    if (iterate.points[k].on) continue;
+    for (int i = 0; i < 3; ++i) left_out[model.points[k].row + i] = true;
+  }
+  std::vector<int> rows;
+  for (int row = 0; row < model.rows; ++row) {
+    if (!left_out[row]) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// 1 of rows in metres, whose multipliers are newtons; those of angles are newton metres.
+double weight_of(const Model& model, int row) {
+  for (const ActuatorModel& actuator : model.actuators) {
+    if (actuator.row != row || !actuator.turns()) continue;
+    const double length = model.rods[actuator.line.rod].rod.length();
+    return 1.0 / (length * length);
+  }
+  return 1.0;
+}
+
+/// Which rows each group of combinations ties to each other.
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), std::size_t{0}); }
+  std::size_t find(std::size_t i) {
+    while (of_[i] != i) i = of_[i] = of_[of_[i]];
+    return i;
+  }
+  void join(std::size_t i, std::size_t j) { of_[find(i)] = find(j); }
+
+ private:
+  std::vector<std::size_t> of_;
+};
+
+/// Whether rows of a length-scaled Gram matrix may depend on others: a Cholesky factorisation with diagonal pivoting
+/// that leaves almost nothing of them.
+bool may_depend(Eigen::MatrixXd gram) {
+  const Eigen::LDLT<Eigen::MatrixXd> factor(gram);
+  return !(factor.vectorD().minCoeff() > kSuspect);
+}
+
+}  // namespace
+
+double RedundantRows::contradiction(const Eigen::VectorXd& c) const {
+  double worst = 0.0;
+  for (Eigen::Index k = 0; k < null.cols(); ++k) {
+    double sum = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double n = null(static_cast<Eigen::Index>(i), k);
+      sum += n * c[rows[i]];
+      size += weight[static_cast<Eigen::Index>(i)] * n * n;
+    }
+    if (size > 0.0) worst = std::max(worst, std::abs(sum) / std::sqrt(size));
+  }
+  return worst;
+}
+
+std::vector<int> RedundantRows::contradicting(const Eigen::VectorXd& c) const {
+  std::vector<int> found;
+  const Eigen::VectorXd own = c(rows);
+  const Eigen::VectorXd left = null * (null.transpose() * null).ldlt().solve(null.transpose() * own);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (weight[at] > 0.0 && std::abs(left[at]) > 1e-3 * left.cwiseAbs().maxCoeff()) found.push_back(rows[i]);
+  }
+  return found;
+}
+
+void RedundantRows::make_smallest(const Eigen::VectorXd& lambda, Eigen::VectorXd& dlambda) const {
+  const Eigen::MatrixXd weighted = weight.asDiagonal() * null;
+  const Eigen::VectorXd own = lambda(rows) + dlambda(rows);
+  const Eigen::VectorXd along = (null.transpose() * weighted).ldlt().solve(weighted.transpose() * own);
+  dlambda(rows) -= null * along;
+}
+
+std::vector<std::vector<int>> find_redundant_rows(const Model& model, const State& iterate,
+                                                  const solve::CoupledProblem& problem) {
+  std::vector<std::vector<int>> groups;
+  const RowJacobian J(model, iterate, problem, told_rows(model, iterate));
+  const std::vector<std::size_t> left = entangled(J);
+  if (left.empty() || std::ssize(left) > kMostRows) return groups;
+  Eigen::VectorXd norms;
+  const Eigen::MatrixXd dense = dense_transposed(J, left, norms);
+  if (norms.minCoeff() > kZero && !may_depend(dense.transpose() * dense)) return groups;
+  const Eigen::MatrixXd null = null_space(dense);
+  Groups joined(left.size());
+  std::vector<bool> in_one(left.size(), false);
+  for (Eigen::Index k = 0; k < null.cols(); ++k) {
+    const double most = null.col(k).cwiseAbs().maxCoeff();
+    std::size_t first = left.size();
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (std::abs(null(static_cast<Eigen::Index>(i), k)) < 1e-6 * most) continue;
+      in_one[i] = true;
+      if (first == left.size()) first = i;
+      joined.join(i, first);
+    }
+  }
+  std::map<std::size_t, std::vector<int>> found;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (in_one[i]) found[joined.find(i)].push_back(J.rows()[left[i]]);
+  }
+  for (auto& [root, rows] : found) groups.push_back(std::move(rows));
+  std::sort(groups.begin(), groups.end());
+  return groups;
+}
+
+RedundantRows redundant_rows(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
+                             const std::vector<int>& rows) {
+  RedundantRows own;
+  const RowJacobian J(model, iterate, problem, rows);
+  std::vector<std::size_t> all(rows.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd norms;
+  Eigen::MatrixXd null = null_space(dense_transposed(J, all, norms));
+  if (null.cols() == 0) return own;
+  for (Eigen::Index i = 0; i < norms.size(); ++i) {
+    if (norms[i] > kZero) null.row(i) /= norms[i];
+  }
+  // What the rows take of those that hold auxiliary unknowns goes with them.
+  std::map<int, Eigen::RowVectorXd> of_row;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    of_row[rows[i]] = null.row(static_cast<Eigen::Index>(i));
+    for (const Entry& entry : J.substituted(i)) {
+      auto [place, fresh] = of_row.try_emplace(entry.column, Eigen::RowVectorXd::Zero(null.cols()));
+      place->second -= entry.value * null.row(static_cast<Eigen::Index>(i));
+    }
+  }
+  own.null.resize(static_cast<Eigen::Index>(of_row.size()), null.cols());
+  own.weight.setZero(own.null.rows());
+  for (const auto& [row, values] : of_row) {
+    const auto i = static_cast<Eigen::Index>(own.rows.size());
+    own.null.row(i) = values;
+    if (std::binary_search(rows.begin(), rows.end(), row)) own.weight[i] = weight_of(model, row);
+    own.rows.push_back(row);
+  }
+  for (Eigen::Index k = 0; k < null.cols(); ++k)
+    own.null.col(k) /= std::sqrt(own.weight.dot(own.null.col(k).cwiseAbs2()));
+  return own;
+}
+
+void add_compliance(const RedundantRows& redundant, double alpha, solve::CoupledProblem& problem) {
+  const Eigen::MatrixXd weighted = redundant.weight.asDiagonal() * redundant.null;
+  const Eigen::MatrixXd W = alpha * weighted * weighted.transpose();
+  for (Eigen::Index i = 0; i < W.rows(); ++i) {
+    if (redundant.weight[i] == 0.0) continue;
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      if (redundant.weight[j] != 0.0)
+        problem.W.add(redundant.rows[static_cast<std::size_t>(i)], redundant.rows[static_cast<std::size_t>(j)],
+                      W(i, j));
+    }
+  }
+}
+
+namespace {
+
+/// What a row belongs to: "actuators.a", "couplings.3", "rods.cable".
+std::string owner_of(const Model& model, int row) {
+  for (const ActuatorModel& actuator : model.actuators) {
+    if (actuator.row == row) return "actuators." + actuator.name;
+  }
+  for (const GeometricCableModel& cable : model.cables) {
+    if (cable.length_row == row) return "rods." + cable.name;
+  }
+  for (const PointModel& point : model.points) {
+    if (row >= point.row && row < point.row + 3) return "couplings." + std::to_string(point.coupling);
+  }
+  for (const TieModel& tie : model.ties) {
+    const int last = tie.body() ? tie.body_row + (tie.directors ? 12 : 3)
+                                : tie.row + static_cast<int>(tie.along.size() + tie.about.size());
+    if (row >= tie.row && row < last) return "couplings." + std::to_string(tie.coupling);
+  }
+  return "row " + std::to_string(row);
+}
+
+/// The rods whose strains would answer.
+std::set<int> rods_of(const Model& model, const std::vector<int>& rows) {
+  std::set<int> rods;
+  const auto in = [&rows](int first, int count) {
+    return std::any_of(rows.begin(), rows.end(), [&](int row) { return row >= first && row < first + count; });
+  };
+  for (const ActuatorModel& actuator : model.actuators) {
+    if (actuator.row >= 0 && actuator.line.rod >= 0 && in(actuator.row, 1)) rods.insert(actuator.line.rod);
+  }
+  for (const PointModel& point : model.points) {
+    if (point.line.rod >= 0 && in(point.row, 3)) rods.insert(point.line.rod);
+  }
+  for (const TieModel& tie : model.ties) {
+    if (!in(tie.row, static_cast<int>(tie.along.size() + tie.about.size()))) continue;
+    rods.insert(tie.rod);
+    if (tie.other >= 0) rods.insert(tie.other);
+  }
+  return rods;
+}
+
+bool has_strain(const rod::Rod& rod, int strain) {
+  return std::any_of(rod.sections.begin(), rod.sections.end(), [strain](const rod::Section& section) {
+    return std::any_of(section.modes.begin(), section.modes.end(),
+                       [strain](const rod::Mode& mode) { return mode.strain == strain; });
+  });
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 6;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kShown; ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kShown) text += " and " + std::to_string(names.size() - kShown) + " more";
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> join_by_rods(const Model& model, const std::vector<std::vector<int>>& groups) {
+  Groups joined(groups.size());
+  std::map<int, std::size_t> first_on;  // group of each rod
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (const int rod : rods_of(model, groups[i])) joined.join(i, first_on.try_emplace(rod, i).first->second);
+  }
+  std::map<std::size_t, std::vector<int>> found;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    std::vector<int>& rows = found[joined.find(i)];
+    rows.insert(rows.end(), groups[i].begin(), groups[i].end());
+  }
+  std::vector<std::vector<int>> all;
+  for (auto& [root, rows] : found) {
+    std::sort(rows.begin(), rows.end());
+    all.push_back(std::move(rows));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::string name_of_rows(const Model& model, const std::vector<int>& rows) {
+  std::vector<std::string> names;
+  for (const int row : rows) {
+    const std::string name = owner_of(model, row);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return listed(names);
+}
+
+std::string remedy_of_rows(const Model& model, const std::vector<int>& rows) {
+  const bool actuated = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const ActuatorModel& own) {
+    return own.row >= 0 && std::binary_search(rows.begin(), rows.end(), own.row);
+  });
+  std::string strains;
+  for (int strain = 0; strain < 6; ++strain) {
+    if (actuated && strain > 3) break;  // shear does not make a tendon longer to speak of
+    const std::set<int> rods = rods_of(model, rows);
+    const bool missing =
+        std::any_of(rods.begin(), rods.end(), [&](int n) { return !has_strain(model.rods[n].rod, strain); });
+    if (!missing || (actuated && strain < 3)) continue;
+    strains += (strains.empty() ? "`" : ", `") + std::string(rod::kStrainNames[static_cast<std::size_t>(strain)]) + "`";
+  }
+  std::vector<std::string> names;
+  for (const int n : rods_of(model, rows)) names.push_back("rods." + model.rods[n].name);
+  std::string text;
+  if (!strains.empty()) text = "add " + strains + " to the strains of " + listed(names);
+  const std::string also = text.empty() ? "" : ", or ";
+  if (actuated) return text + also + "drive one of them by force (`tension` of a tendon) instead of a position";
+  return text + also + "leave out axes that another one holds already";
+}
+
+}  // namespace sinew

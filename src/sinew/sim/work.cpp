@@ -1,0 +1,172 @@
+#include "sinew/sim/work.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "sinew/lie/rotation.hpp"
+#include "sinew/sim/motors.hpp"
+#include "sinew/sim/places.hpp"
+#include "sinew/sim/solid_loads.hpp"
+
+namespace sinew {
+
+namespace {
+
+/// Work of a load whose factor goes from one value to another.
+double work_of(const RodLoadModel& load, const StepContext& context, const State& next, double before, double after) {
+  const Model& model = context.model;
+  const rod::Rod& rod = model.rods[load.rod].rod;
+  const Placement base = rod_base(model, context.start, load.rod);
+  const auto start = rod::configure(rod, {base, context.start.rods[load.rod].turned}, context.start.rods[load.rod].q);
+  const auto end = rod::configure(rod, base_of(context, next, load.rod), next.rods[load.rod].q);
+  double sum = 0.0;
+  for (const RodLoadModel::At& at : load.at) {
+    const rod::Branch a = rod::branch(start, at.s), b = rod::branch(end, at.s);
+    const Vec3 turn = lie::log(b.R * a.R.transpose());
+    const Vec3 along = load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
+    const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
+    sum += at.weight * (load.force.dot(along) + load.moment.dot(about));
+  }
+  return 0.5 * (before + after) * sum;
+}
+
+double work_of(const SolidLoadModel& load, const StepContext& context, const State& next, double before, double after) {
+  const Eigen::Matrix3Xd &from = context.start.solids[load.solid].x, &to = next.solids[load.solid].x;
+  const Eigen::Matrix3Xd force = before * load_forces(load, from) + after * load_forces(load, to);
+  return 0.5 * force.cwiseProduct(to - from).sum();
+}
+
+/// Work of what holds a solid where it is held to move, and of the frame that its springs pull at.
+double work_of_supports(const StepContext& context, const State& next, int number) {
+  const SolidModel& model = context.model.solids[number];
+  const SolidState &from = context.start.solids[number], &to = next.solids[number];
+  double sum = 0.0;
+  Eigen::Index held = 0;
+  solid::each_held(model.body, [&](int axis, int node) {
+    sum += 0.5 * (from.reaction[held] + to.reaction[held]) * (to.x(axis, node) - from.x(axis, node));
+    ++held;
+  });
+  if (model.springs.size() == 0) return sum;
+  const Placement before = moved(context.model, context.start, model.frame), after = context.moved(model.frame);
+  const Eigen::Matrix3Xd drawn = 0.5 * (spring_stretch(model, before, from.x) + spring_stretch(model, after, to.x));
+  const Eigen::Matrix3Xd carried = ((after.R - before.R) * model.body.rest).colwise() + Vec3(after.p - before.p);
+  return sum - model.springs.cwiseProduct(drawn).cwiseProduct(carried).sum();
+}
+
+/// A force and a moment about a point.
+struct Wrench {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+};
+
+/// Work of the mean of two wrenches as a frame carries their point from p.
+double work_of(const Wrench& before, const Wrench& after, const Placement& carried, const Vec3& p) {
+  return 0.5 * (before.force + after.force).dot(apply(carried, p) - p) +
+         0.5 * (before.moment + after.moment).dot(lie::log(carried.R));
+}
+
+/// What a frame does to the world over the step.
+Placement carried_by(const StepContext& context, int frame) {
+  return compose(context.moved(frame), inverse(moved(context.model, context.start, frame)));
+}
+
+/// With which a rod's base is held: the opposite of what the rod exerts on it.
+Wrench held_by_base(const rod::Configuration& shape, const RodState& state) {
+  Eigen::Index first = 0;
+  while (first + 1 < state.internal.cols() && state.internal(0, first) < 0.0) ++first;
+  const rod::Mat3 R = rod::branch(shape, 0.0).R;
+  return {R * -state.internal.block<3, 1>(4, first), R * -state.internal.block<3, 1>(1, first)};
+}
+
+/// With which a frame holds a rod by an attachment, whose rows are along and about its axes.
+Wrench held_by_attachment(const TieModel& tie, const rod::Mat3& axes, const Eigen::VectorXd& lambda) {
+  Wrench own;
+  int row = tie.row;
+  for (const int a : tie.along) own.force -= lambda[row++] * axes.col(a);
+  for (const int a : tie.about) own.moment += lambda[row++] * tie.length * axes.col(a);
+  return own;
+}
+
+/// Work of frames that move bases of rods and cables, attachments and obstacles.
+double work_of_frames(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
+  const Model& model = context.model;
+  const auto moves = [&model](int frame) { return frame >= 0 && model.scene.frames[frame].second.motion.has_value(); };
+  double sum = 0.0;
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    if (!moves(model.rods[i].frame)) continue;
+    const auto number = static_cast<int>(i);
+    const rod::Rod& rod = model.rods[i].rod;
+    const RodState &from = context.start.rods[i], &to = next.rods[i];
+    const auto before = rod::configure(rod, {rod_base(model, context.start, number), from.turned}, from.q);
+    const auto after = rod::configure(rod, base_of(context, next, number), to.q);
+    sum += work_of(held_by_base(before, from), held_by_base(after, to), carried_by(context, model.rods[i].frame),
+                   rod::position(before, 0.0));
+  }
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    const GeometricCableModel& cable = model.cables[i];
+    if (!moves(cable.frame) || cable.cable.points == 0) continue;
+    const auto held = [&](const State& state, const Placement& base) {
+      const Eigen::VectorXd& z = state.cables[i].z;
+      const Vec3 start = apply(base, Vec3(-z[0], 0.0, 0.0));
+      return Wrench{-state.lambda[cable.length_row] * (z.segment<3>(1) - start).normalized(), Vec3::Zero()};
+    };
+    const Placement before = cable_base(model, context.start, static_cast<int>(i));
+    sum += work_of(held(context.start, before), held(next, context.cable_bases[i]), carried_by(context, cable.frame),
+                   before.p);
+  }
+  for (const TieModel& tie : model.ties) {
+    if (tie.body() || !moves(tie.frame)) continue;
+    const Placement before = compose(moved(model, context.start, tie.frame), tie.holder),
+                    after = compose(context.moved(tie.frame), tie.holder);
+    sum += work_of(held_by_attachment(tie, before.R, context.start.lambda),
+                   held_by_attachment(tie, after.R, next.lambda), carried_by(context, tie.frame), before.p);
+  }
+  // What an obstacle presses with, where it presses: half at the start of the step, half at its end.
+  const auto pressed = [&](const ContactState& contact, const Vec3& force, const Vec3& point) {
+    const PairModel& pair = model.pairs[contact.pair];
+    for (const Collider& own : {pair.a, pair.b}) {
+      if (own.kind != Collider::Kind::obstacle || !moves(model.obstacles[own.number].frame)) continue;
+      const bool is_a = own == (contact.on_second ? pair.b : pair.a);
+      const Wrench by_it{is_a ? Vec3(-force) : force, Vec3::Zero()};
+      sum += work_of(by_it, {}, carried_by(context, model.obstacles[own.number].frame), point);
+    }
+  };
+  for (const ContactState& own : context.start.contacts) pressed(own, own.force, own.point);
+  if (touches.size() == next.contacts.size()) {
+    for (std::size_t i = 0; i < touches.size(); ++i) pressed(next.contacts[i], touches[i].force, touches[i].point_b);
+  }
+  return sum;
+}
+
+}  // namespace
+
+double work(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
+  const Model& model = context.model;
+  double sum = 0.0;
+  // What is applied from the start acts in full over the first step. Parts of a step and static paths begin with
+  // nothing.
+  const bool whole = model.scene.analysis != Analysis::statics && context.h > 0.999 * model.scene.time.step;
+  const bool first = context.start.time == 0.0 && whole;
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const ActuatorModel& actuator = model.actuators[i];
+    const double force =
+        first && actuator.told_force() ? told_at(actuator.drive, context.start.time) : context.start.actuators[i];
+    const double moved = motor_position(model, next, actuator) - motor_position(model, context.start, actuator);
+    sum += 0.5 * (force + next.actuators[i]) * moved;
+  }
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    const double before = first ? told_at(model.loads[i].factor, context.start.time) : context.start.loads[i];
+    const double after = context.command.loads[i];
+    sum += std::visit([&](const auto& load) { return work_of(load, context, next, before, after); }, model.loads[i].on);
+  }
+  if (std::any_of(model.scene.frames.begin(), model.scene.frames.end(),
+                  [](const auto& frame) { return frame.second.motion.has_value(); }))
+    sum += work_of_frames(context, next, touches);
+  for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
+  for (const Grip& grip : context.command.grips) {
+    const Vec3 from = context.start.solids[grip.solid].x.col(grip.node), to = next.solids[grip.solid].x.col(grip.node);
+    sum += grip.stiffness * (grip.to - 0.5 * (from + to)).dot(to - from);
+  }
+  return sum;
+}
+
+}  // namespace sinew

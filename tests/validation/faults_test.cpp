@@ -1,0 +1,215 @@
+// Scenes that once ended `converged` and wrong, as small as they could be made. What is right stands beside each.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/recorded_run.hpp"
+
+namespace sinew::test {
+namespace {
+
+using testing::HasSubstr;
+
+RecordedRun fault(const std::string& name, const std::vector<std::string>& changes = {}) {
+  return run_file(std::filesystem::path(SINEW_SOURCE_DIR) / "tests/validation/faults" / (name + ".yaml"), changes);
+}
+
+// Opposite tendons that are told opposite lengths: forces of +-5e4 N, and `singular`.
+TEST(Faults, tendons_antagonist) {
+  for (const char* analysis : {"dynamic", "quasi_static", "static"}) {
+    SCOPED_TRACE(analysis);
+    const RecordedRun run = fault("tendons_antagonist", {std::string("analysis=") + analysis});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_NEAR(run.last("tip.x"), 0.16829, 5e-6);
+    EXPECT_NEAR(run.last("tip.z"), 0.09194, 5e-6);
+    EXPECT_NEAR(run.last("a.force"), 1.3404, 1e-4);
+    EXPECT_NEAR(run.last("b.force"), -1.3404, 1e-4);
+    ASSERT_TRUE(run.warning("redundant_constraints"));
+    EXPECT_EQ(run.warning("redundant_constraints")->where, "actuators.a, actuators.b");
+    EXPECT_TRUE(run.warning("tendon_pushes", "actuators.b"));
+  }
+}
+
+// Four tendons at right angles: 3e17 N, `converged`.
+TEST(Faults, tendons_four) {
+  const RecordedRun run = fault("tendons_four");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_NEAR(run.last("tip.x"), 0.168, 1e-3);
+  EXPECT_NEAR(run.last("tip.y"), 0.0, 1e-9);
+  EXPECT_NEAR(run.last("tip.z"), 0.092, 1e-3);
+  EXPECT_NEAR(run.last("t0.force"), -run.last("t2.force"), 1e-9);
+  EXPECT_LT(run.largest("t0.force"), 2.0);
+  EXPECT_NEAR(run.last("t1.force"), 0.0, 1e-9);
+  EXPECT_TRUE(run.warning("redundant_constraints", "actuators.t0, actuators.t2"));
+  EXPECT_TRUE(run.warning("redundant_constraints", "actuators.t1, actuators.t3"));
+}
+
+// Three rods welded side by side, without shear: `singular` without a place.
+TEST(Faults, rods_welded_along_slow) {
+  const RecordedRun run = fault("rods_welded_along");
+  ASSERT_TRUE(run.done()) << run.why();
+  const Warning* told = run.warning("redundant_constraints");
+  ASSERT_TRUE(told);
+  EXPECT_THAT(told->where, HasSubstr("couplings.0"));
+  EXPECT_THAT(told->remedy, HasSubstr("`shear_y`, `shear_z` to the strains of rods.r0, rods.r1"));
+  EXPECT_NEAR(run.last("t0.z"), run.last("t2.z"), 1e-6);
+}
+
+// A rod that cannot stretch is pushed straight into a ball: 1.4e288 N.
+TEST(Faults, rod_endwise) {
+  const RecordedRun run = fault("rod_endwise");
+  EXPECT_EQ(run.failure().status, Status::inconsistent);
+  EXPECT_THAT(run.failure().detail, HasSubstr("add `elongation` to the strains of rods.r"));
+  EXPECT_LT(run.largest("f.normal"), 1.0);
+  const RecordedRun gives = fault("rod_endwise", {"rods.r.strains=[torsion, bending_y, bending_z, elongation]"});
+  EXPECT_NE(gives.failure().status, Status::inconsistent) << gives.why();
+  EXPECT_GT(gives.largest("f.normal"), 0.0);
+}
+
+// A frame starts to move a rod sideways: it passed through a peg at 10 ms.
+TEST(Faults, contact_frame_moves) {
+  for (const char* step : {"10 ms", "5 ms", "2 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("contact_frame_moves", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_GT(run.largest("f.contacts"), 0.0);
+    // It hooks on the peg: the tip stays behind and swings in to the base.
+    EXPECT_LT(run.last("tip.x"), 0.0);
+  }
+}
+
+// 1 N on a light rod: 0.27 m inside a half-space.
+TEST(Faults, contact_rod_pushed) {
+  for (const char* step : {"20 ms", "10 ms", "1 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("contact_rod_pushed", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_NEAR(run.last("tip.x"), 0.109, 1e-6);
+    EXPECT_NEAR(run.last("f.normal"), 1.0, 1e-6);
+  }
+}
+
+// A loop is pulled over a peg of 8 mm, which it passed through at 10 and 20 ms.
+TEST(Faults, contact_loop_pulled) {
+  // (96 sections: 5.61 N along x; chords of 32 had 5.80.)
+  for (const char* step : {"10 ms", "5 ms", "2 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("contact_loop_pulled", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_NEAR(run.last("f.x"), 5.61, 0.03);
+    EXPECT_NEAR(run.last("f.normal"), 6.4, 0.5);
+  }
+  // At 20 ms it may stop, but is never on the other side.
+  EXPECT_LT(fault("contact_loop_pulled", {"time.step=20 ms"}).last("mid.x"), 0.03);
+}
+
+// At rest a rod that touches a pin of 2 mm passed through it.
+TEST(Faults, tunnel) {
+  const RecordedRun run = fault("tunnel");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_EQ(run.last("c0.contacts"), 1.0);
+  EXPECT_GT(run.last("c0.normal"), 1.0);
+  EXPECT_EQ(run.warning("penetration"), nullptr);
+}
+
+// Normals of chords: the force along the rod was 84 % and 15 % too large.
+TEST(Faults, contact_two_pins) {
+  const RecordedRun run = fault("contact_two_pins");
+  ASSERT_TRUE(run.done()) << run.why();
+  const double along = 0.2 * std::numbers::pi * std::sin(-run.last("turn.y"));
+  EXPECT_NEAR(along, 0.462, 1e-3);
+  EXPECT_NEAR(run.last("basef.x"), along, 5e-3 * along);
+}
+
+// At rest, a rod that sags beside a post: "moves further in a step than contacts are looked for".
+TEST(Faults, sag_beside_post) {
+  const RecordedRun run = fault("sag_beside_post");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_NEAR(run.last("tip.x"), 20.387e-3, 1e-6);
+  EXPECT_NEAR(run.last("tip.z"), 77.897e-3, 1e-6);
+}
+
+// Two bodies in free flight that never come nearer than 20 mm: 0.0038 J became 0.495 J.
+TEST(Faults, phantom_capsule_box) {
+  for (const char* step : {"0.125 ms", "1 ms"}) {
+    const RecordedRun run = fault("phantom_capsule_box", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_NEAR(run.last("energy.kinetic"), run.signal("energy.kinetic").front(),
+                1e-3 * run.signal("energy.kinetic").front());
+    EXPECT_TRUE(run.warnings.empty());
+  }
+}
+
+// A capsule and a box that overlap by 1.2 mm at the start.
+TEST(Faults, overlap_not_told) {
+  const RecordedRun run = fault("overlap_not_told");
+  ASSERT_TRUE(run.done()) << run.why();
+  const Warning* told = run.warning("overlap_at_start");
+  ASSERT_TRUE(told);
+  EXPECT_NEAR(told->value, 1.2e-3, 0.1e-3);
+}
+
+// A spinning cylinder on a floor gained energy and sank in.
+TEST(Faults, cylinder_gains) {
+  const RecordedRun run = fault("cylinder_gains");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_EQ(run.warning("energy_gain"), nullptr);
+  EXPECT_EQ(run.warning("penetration"), nullptr);
+  const double z = run.last("o.z");
+  EXPECT_TRUE(std::abs(z - 0.03) < 1e-4 || std::abs(z - 0.02) < 1e-4) << z;
+  EXPECT_LT(run.last("energy.kinetic"), 1e-3);
+}
+
+// A rod that falls on a cylinder left with 2.6 times the energy of its fall.
+TEST(Faults, rod_impact_gain) {
+  const RecordedRun run = fault("rod_impact_gain");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_EQ(run.warning("energy_gain"), nullptr);
+  const std::vector<double> kinetic = run.signal("energy.kinetic"), elastic = run.signal("energy.elastic"),
+                            weight = run.signal("energy.weight");
+  const double start = kinetic[0] + elastic[0] + weight[0];
+  for (std::size_t i = 0; i < kinetic.size(); ++i) EXPECT_LT(kinetic[i] + elastic[i] + weight[i] - start, 1e-6) << i;
+}
+
+// Two tubes of rest curvature, one in the other by four ties: "unstable", coming and going with the step.
+TEST(Faults, false_unstable) {
+  for (const char* step : {"0.1", "0.05", "0.02"}) {
+    const RecordedRun run = fault("false_unstable", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_EQ(run.warning("unstable"), nullptr) << step;
+  }
+}
+
+// "The path turned back, there is no equilibrium", after 3000 steps at 73 % of the load.
+TEST(Faults, path_limit_slow) {
+  const RecordedRun run = fault("path_limit");
+  EXPECT_EQ(run.failure().status, Status::path_unfinished);
+  EXPECT_THAT(run.failure().detail, HasSubstr("73.3 % of the load in 300"));
+}
+
+// One linearisation for a step of one second: 30 % off, without a word.
+TEST(Faults, long_step) {
+  const RecordedRun run = fault("long_step");
+  ASSERT_TRUE(run.done()) << run.why();
+  const Warning* told = run.warning("linearisation_off");
+  ASSERT_TRUE(told);
+  EXPECT_THAT(told->remedy, HasSubstr("leave `newton: 1` out"));
+  EXPECT_EQ(fault("long_step", {"newton={}"}).warning("linearisation_off"), nullptr);
+}
+
+// The finger's cable is pulled by 60 mm: the body passes through itself, the thread pushes.
+TEST(Faults, passes_through_itself) {
+  const RecordedRun run = fault("passes_through_itself");
+  ASSERT_TRUE(run.done()) << run.why();
+  ASSERT_TRUE(run.warning("solid_crosses_itself", "solids.finger"));
+  EXPECT_THAT(run.warning("solid_crosses_itself")->remedy, HasSubstr("between: [finger, finger]"));
+  EXPECT_TRUE(run.warning("thread_pushes", "actuators.pull"));
+  const RecordedRun less =
+      fault("passes_through_itself", {"actuators.pull.displacement.values=[0 mm, 10 mm]", "time.duration=1 s"});
+  EXPECT_TRUE(less.warnings.empty());
+}
+
+}  // namespace
+}  // namespace sinew::test
