@@ -189,6 +189,41 @@ TEST(Run, ReportsWhatItDid) {
   EXPECT_EQ(report["steps"][5]["status"], "converged");
 }
 
+/// A rod with two opposite tendons that are told opposite lengths: one pushes, and both are one constraint.
+const char* const two_tendons = R"(time: {step: 10 ms, duration: 100 ms}
+rods: {arm: {path: [[0,0,0],[0.2,0,0]], section: {circle: {radius: 8 mm}}, material: {young: 1 MPa, poisson: 0.5, density: 1100, damping: 20 ms}}}
+actuators:
+  a: {rod: arm, tendon: {distance: 6 mm}, displacement: {times: [0, 0.1], values: [0, 1 mm]}}
+  b: {rod: arm, tendon: {distance: 6 mm, angle: 180 deg}, displacement: {times: [0, 0.1], values: [0, -1 mm]}}
+)";
+
+TEST(Run, WarningsAreDataAndWithStrictAnExitCode) {
+  const SceneFolder scene;
+  write_file(scene / "two.yaml", two_tendons);
+  const std::string file = (scene / "two.yaml").string();
+  const Finished checked = sinew({"check", file});
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_NE(checked.out.find("warning: actuators.a, actuators.b: 2 constraint rows depend on each other"),
+            std::string::npos);
+  EXPECT_EQ(sinew({"check", file, "--strict"}).code, 4);
+  EXPECT_EQ(sinew({"run", file, "-o", (scene / "out").string()}).code, 0);
+  EXPECT_EQ(sinew({"run", file, "-o", (scene / "strict").string(), "--strict"}).code, 4);
+  const nlohmann::json warnings = report_of(scene / "out")["warnings"];
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0]["code"], "redundant_constraints");
+  EXPECT_FALSE(warnings[0].contains("first_time_s"));
+  EXPECT_EQ(warnings[1]["code"], "tendon_pushes");
+  EXPECT_EQ(warnings[1]["where"], "actuators.b");
+  EXPECT_EQ(warnings[1]["unit"], "N");
+  EXPECT_NEAR(warnings[1]["first_time_s"].get<double>(), 0.01, 1e-12);
+  EXPECT_EQ(warnings[1]["steps"], 10);
+  EXPECT_GT(warnings[1]["worst"].get<double>(), warnings[1]["limit"].get<double>());
+  // Made again from the recording they are the same.
+  std::filesystem::remove(scene / "out" / "report.json");
+  EXPECT_EQ(sinew({"export", (scene / "out").string()}).code, 0);
+  EXPECT_EQ(report_of(scene / "out")["warnings"], warnings);
+}
+
 TEST(Run, TwiceGivesTheSameBytes) {
   const SceneFolder scene;
   ASSERT_EQ(sinew(scene.run("first", short_run)).code, 0);

@@ -62,6 +62,16 @@ RecordedStep step(int k) {
              Limits::infinity(),
              std::bit_cast<double>(0x7ff800000000beefULL),
              1.0 + Limits::epsilon() * k};
+  for (int i = 0; i < k % 3; ++i) {
+    s.warnings.push_back({.code = "tendon_pushes",
+                          .where = "actuators." + std::to_string(i),
+                          .message = "pushes",
+                          .remedy = "pull",
+                          .time = s.time,
+                          .value = 1.0 / 3.0,
+                          .unit = "N",
+                          .steps = 1});
+  }
   return s;
 }
 
@@ -93,6 +103,7 @@ void expect_same(const RecordedStep& a, const RecordedStep& b) {
   EXPECT_EQ(a.newton, b.newton);
   expect_same_bits(a.signals, b.signals);
   expect_same_bits(a.state, b.state);
+  EXPECT_EQ(a.warnings, b.warnings);
 }
 
 std::string message_of(const std::string& bytes) {

@@ -307,13 +307,19 @@ void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& st
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };
   const std::size_t kinetic = column("energy.kinetic"), elastic = column("energy.elastic"),
-                    dissipated = column("energy.dissipated");
-  double largest = 0.0, peak = -INFINITY;
+                    work = column("energy.work"), dissipated = column("energy.dissipated");
+  double largest = 0.0, peak = -INFINITY, done = 0.0, before = 0.0;
+  // Work is known by the mean of forces at the ends of steps, so to about what it changes by from step to step.
+  double unsure = 0.0;
   for (const io::RecordedStep& step : steps) {
     if (dissipated >= step.signals.size()) return;
     largest = std::max(largest, step.signals[kinetic] + step.signals[elastic]);
     peak = std::max(peak, step.signals[dissipated]);
-    const double gain = peak - step.signals[dissipated];
+    const double more = step.signals[work] - done;
+    unsure += 0.5 * std::abs(more - before);
+    done = step.signals[work];
+    before = more;
+    const double gain = peak - step.signals[dissipated] - unsure;
     if (!(gain > kGain * largest) || !(largest > kSmall * model.bearing * model.size)) continue;
     merge({.code = "energy_gain",
            .where = "energy",

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sinew/sim/contact_places.hpp"
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 
@@ -51,8 +52,12 @@ void assess_cables(const Model& model, const State& state, Warnings& warnings) {
                     .limit = 0.0,
                     .unit = "N"});
     }
-    // A base that is pulled along -x draws its rod out of the body: a thread then, which cannot push to speak of.
-    if (own.tendon || own.turns() || own.axis > 0 || own.line.rod < 0 || !(force < -rounding)) continue;
+    // A thin rod whose base is held or drawn out of the body along -x is a thread, which cannot push to speak of. One
+    // that is pushed in, or told to push, is meant to.
+    if (own.tendon || own.turns() || model.scene.actuators[i].second.axis || own.line.rod < 0 || own.told_force() ||
+        !(force < -rounding))
+      continue;
+    if (motor_position(model, state, own) < -1e-9 * model.size) continue;
     const RodModel& rod = model.rods[own.line.rod];
     const bool slides = std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& point) {
       return point.line == own.line && point.unknown >= 0;
