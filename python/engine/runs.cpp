@@ -147,7 +147,7 @@ nb::dict signals_of(const Run& own) {
   return all;
 }
 
-nb::list reduced(const std::vector<Warning>& warnings) {
+nb::list tuples_of(const std::vector<Warning>& warnings) {
   nb::list all;
   for (const Warning& own : warnings)
     all.append(nb::make_tuple(own.code, own.where, own.message, own.remedy, own.time, own.value, own.limit, own.unit,
@@ -170,10 +170,10 @@ nb::tuple reduced(const Run& own) {
   nb::list steps;
   for (const io::RecordedStep& step : own.steps)
     steps.append(nb::make_tuple(step.time, step.status, step.targets, step.newton, step.residual, step.violation,
-                                vector_of(step.signals), vector_of(step.state), reduced(step.warnings)));
+                                vector_of(step.signals), vector_of(step.state), tuples_of(step.warnings)));
   const StepReport& failure = own.summary.failure;
   return nb::make_tuple(nb::module_::import_("sinew.running").attr("_run_again"),
-                        nb::make_tuple(own.model, own.summary.end, reduced(own.summary.warnings), own.summary.threads,
+                        nb::make_tuple(own.model, own.summary.end, tuples_of(own.summary.warnings), own.summary.threads,
                                        nb::make_tuple(static_cast<int>(failure.status), failure.detail, failure.newton,
                                                       failure.halvings, failure.residual, failure.violation),
                                        steps));

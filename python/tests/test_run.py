@@ -274,3 +274,28 @@ def test_what_cannot_be_shown_is_told(tmp_path: Path, program: str) -> None:
         sinew.show(tmp_path / "nowhere.yaml", browser=False)
     with pytest.raises(TypeError, match="not 42"):
         sinew.show(42, browser=False)  # type: ignore[arg-type]
+
+
+def test_warnings_are_data(tmp_path: Path) -> None:
+    """Two opposite tendons that are told opposite lengths: one constraint, and one of them pushes."""
+    scene = tmp_path / "two.yaml"
+    scene.write_text(
+        "time: {step: 10 ms, duration: 100 ms}\n"
+        "rods: {arm: {path: [[0,0,0],[0.2,0,0]], section: {circle: {radius: 8 mm}}, material: {young: 1 MPa, poisson: 0.5, "
+        "density: 1100, damping: 20 ms}}}\n"
+        "actuators:\n"
+        "  a: {rod: arm, tendon: {distance: 6 mm}, displacement: {times: [0, 0.1], values: [0, 1 mm]}}\n"
+        "  b: {rod: arm, tendon: {distance: 6 mm, angle: 180 deg}, displacement: {times: [0, 0.1], values: [0, -1 mm]}}\n"
+    )
+    model = sinew.build(scene)
+    assert [own.code for own in model.warnings] == ["redundant_constraints"]
+    run = sinew.simulate(model)
+    assert [own.code for own in run.warnings] == ["redundant_constraints", "tendon_pushes"]
+    pushes = run.warnings[1]
+    assert (pushes.where, pushes.unit, pushes.steps) == ("actuators.b", "N", 10)
+    assert pushes.time == pytest.approx(0.01) and pushes.value > pushes.limit == 0.0
+    assert str(pushes).startswith("actuators.b: the tendon pushes with ")
+    state = model.initial_state()
+    report = sinew.step(model, None, state)
+    assert report.judged and [own.code for own in report.warnings] == ["tendon_pushes"]
+    assert [own.code for own in pickle.loads(pickle.dumps(run)).warnings] == [own.code for own in run.warnings]

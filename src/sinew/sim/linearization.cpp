@@ -114,9 +114,11 @@ bool Linearization::finite() const {
 
 bool Linearization::find_redundant() {
   const auto known = [this](const std::vector<int>& rows) {
-    const auto same = [&rows](const std::vector<int>& own) { return own == rows; };
+    const auto holds = [&rows](const std::vector<int>& own) {
+      return std::includes(own.begin(), own.end(), rows.begin(), rows.end());
+    };
     const auto& all = context_->model.redundant;
-    return std::any_of(all.begin(), all.end(), same) || std::any_of(redundant_.begin(), redundant_.end(), same);
+    return std::any_of(all.begin(), all.end(), holds) || std::any_of(redundant_.begin(), redundant_.end(), holds);
   };
   bool more = false;
   for (std::vector<int>& rows : find_redundant_rows(context_->model, *iterate_, reduced_.problem)) {

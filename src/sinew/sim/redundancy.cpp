@@ -458,7 +458,17 @@ std::vector<std::vector<int>> join_by_rods(const Model& model, const std::vector
   }
   std::vector<std::vector<int>> all;
   for (auto& [root, rows] : found) {
+    const std::set<int> rods = rods_of(model, rows);
+    for (const ActuatorModel& actuator : model.actuators) {
+      if (actuator.row >= 0 && rods.contains(actuator.line.rod)) rows.push_back(actuator.row);
+    }
+    for (const TieModel& tie : model.ties) {
+      if (!rods.contains(tie.rod) && !rods.contains(tie.other)) continue;
+      for (std::size_t i = 0; i < tie.along.size() + tie.about.size(); ++i)
+        rows.push_back(tie.row + static_cast<int>(i));
+    }
     std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
     all.push_back(std::move(rows));
   }
   std::sort(all.begin(), all.end());

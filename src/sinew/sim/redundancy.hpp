@@ -43,7 +43,8 @@ struct RedundantRows {
 std::vector<std::vector<int>> find_redundant_rows(const Model& model, const State& iterate,
                                                   const solve::CoupledProblem& problem);
 
-/// The same groups, those that share a rod as one: in other postures other combinations of their rows are redundant.
+/// The same groups, those that share a rod as one, with all rows of actuators and attachments on their rods: in other
+/// postures other combinations of these are redundant.
 std::vector<std::vector<int>> join_by_rods(const Model& model, const std::vector<std::vector<int>>& groups);
 
 /// The combinations of these rows that nothing answers, at a linearisation.
