@@ -135,10 +135,12 @@ export class Panel {
         },
       });
       const motor = { slider, said, auto, asked: { held: false, when: -Infinity } };
-      slider.addEventListener("input", () => {
+      const hold = (): void => {
         motor.asked = { held: true, when: performance.now() };
         this.hands.ask({ do: "tell", actuator: own.name, value: Number(slider.value) });
-      });
+      };
+      slider.addEventListener("input", hold);
+      slider.addEventListener("click", hold); // on the thumb itself, where no input comes
       this.motors.push(motor);
       return make(
         "label",
@@ -263,7 +265,7 @@ export class Panel {
       own.said.textContent = quantity(told[i]!, unit);
       // Frames that were on their way when it was asked do not know of it yet.
       const mine = frame.head.mine !== undefined && name in frame.head.mine;
-      const held = performance.now() - own.asked.when < 1000 ? own.asked.held : mine;
+      const held = own.slider.matches(":active") || (performance.now() - own.asked.when < 1000 ? own.asked.held : mine);
       own.auto.style.visibility = held ? "visible" : "hidden";
       if (!held) own.slider.value = String(told[i]!);
     });

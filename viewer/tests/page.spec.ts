@@ -354,6 +354,22 @@ test("a slider that is clicked at stays there", async ({ page }) => {
   await served.stop();
 });
 
+test("a slider whose thumb is clicked at is held where it stands", async ({ page }) => {
+  const served = await Served.start("examples/tendon_arm.yaml");
+  await open(page, served.address);
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => !window.sinew.frame().playing);
+  const slider = page.locator("input[data-actuator]").first();
+  const name = (await slider.getAttribute("data-actuator"))!;
+  const box = (await slider.boundingBox())!;
+  const [value, least, most] = await slider.evaluate((own: HTMLInputElement) => [own.value, own.min, own.max].map(Number));
+  const thumb = box.x + 8 + ((value! - least!) / (most! - least!)) * (box.width - 16);
+  await page.mouse.click(thumb, box.y + box.height / 2);
+  await page.waitForFunction((own) => own in window.sinew.frame().mine, name);
+  expect(Number(await slider.inputValue())).toBeCloseTo(value!, 1);
+  await served.stop();
+});
+
 test("a section shows a face, not a shell", async ({ page }) => {
   const served = await Served.start("examples/finger.yaml", "--set", "time.duration=1e6");
   await open(page, served.address);
