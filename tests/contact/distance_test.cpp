@@ -49,13 +49,6 @@ Core core_of(const Shape& shape, const Pose& pose) {
   return core;
 }
 
-Simplex placed(const Pose& pose, Simplex own) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] = pose * own.x[i];
-  own.normal = pose.R * own.normal;
-  own.rim = pose.R * own.rim;
-  return own;
-}
-
 /// The least gap of all that meets; infinite where nothing does.
 double least_gap(const Shape& a, const Pose& at, const Shape& b, const Pose& there, double alarm) {
   std::vector<Meeting> found;
@@ -63,7 +56,7 @@ double least_gap(const Shape& a, const Pose& at, const Shape& b, const Pose& the
   double least = INFINITY;
   for (const Meeting& own : found)
     least =
-        std::min(least, nearest(placed(own.swapped ? there : at, own.a), placed(own.swapped ? at : there, own.b)).gap);
+        std::min(least, nearest(moved(own.swapped ? there : at, own.a), moved(own.swapped ? at : there, own.b)).gap);
   return least;
 }
 

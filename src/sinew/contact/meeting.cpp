@@ -12,13 +12,6 @@ namespace {
 
 Vec3 into(const Pose& pose, const Vec3& x) { return pose.R.transpose() * (x - pose.p); }
 
-Simplex moved(const Pose& pose, Simplex own) {
-  for (int i = 0; i < own.corners(); ++i) own.x[i] = pose * own.x[i];
-  own.normal = pose.R * own.normal;
-  own.rim = pose.R * own.rim;
-  return own;
-}
-
 /// A cylinder's rims, each with its lowest point along -n as it rolls, and the points across and opposite, on which it
 /// stands.
 void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& points) {
@@ -360,6 +353,13 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
 }
 
 }  // namespace
+
+Simplex moved(const Pose& pose, Simplex own) {
+  for (int i = 0; i < own.corners(); ++i) own.x[i] = pose * own.x[i];
+  own.normal = pose.R * own.normal;
+  own.rim = pose.R * own.rim;
+  return own;
+}
 
 void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double alarm,
           std::vector<Meeting>& found) {

@@ -15,6 +15,9 @@ struct Pose {
   Vec3 operator*(const Vec3& x) const { return R * x + p; }
 };
 
+/// A part of a shape, from the shape's axes to where the shape is.
+Simplex moved(const Pose& pose, Simplex own);
+
 /// A part of each of two shapes, each in its own axes. `key` tells the parts from others of the same two shapes.
 struct Meeting {
   Simplex a, b;

@@ -109,10 +109,9 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
   const ContactReport& contact = step.contact;
   const double limit = (fixed ? 1e-4 : 1e-6) * model.size;
   if (contact.deepest_pair >= 0 && contact.penetration > limit) {
-    const PairModel& pair = model.pairs[contact.deepest_pair];
     warnings.add({.code = "penetration",
                   .where = "contact",
-                  .message = name_of(model, pair.a) + " and " + name_of(model, pair.b) + " overlap by " +
+                  .message = name_of_pair(model, contact.deepest_pair) + " overlap by " +
                              number(1e3 * contact.penetration) + " mm",
                   .remedy = "take shorter steps" + std::string(fixed ? ", or leave `newton` out" : ""),
                   .value = contact.penetration,
@@ -127,7 +126,7 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
          .message = "forces of contacts miss Signorini's and Coulomb's laws by " + number(left) + " of the largest",
          .remedy = "take shorter steps, or leave `newton` out",
          .value = left,
-         .limit = 1e-10});
+         .limit = kCoulombTolerance});
   }
 }
 
@@ -203,8 +202,7 @@ std::string beyond_bearing(const Model& model, const State& state) {
   const double limit = kBeyondBearing * model.bearing;
   for (const ContactState& contact : state.contacts) {
     if (contact.force.norm() > limit) {
-      const PairModel& pair = model.pairs[contact.pair];
-      return name_of(model, pair.a) + " and " + name_of(model, pair.b) + " press with " + number(contact.force.norm()) +
+      return name_of_pair(model, contact.pair) + " press with " + number(contact.force.norm()) +
              " N, more than anything here could bear: no strain and no motion answers";
     }
   }

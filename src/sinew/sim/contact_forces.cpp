@@ -11,7 +11,6 @@ namespace sinew {
 namespace {
 
 using Kind = Collider::Kind;
-constexpr double kTolerance = 1e-12;
 constexpr double kNoCompliance = 1e-12;  ///< of the scene's size over what its bodies bear: rounding
 
 }  // namespace
@@ -237,8 +236,8 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
       problem_.b[k] = -problem_.D(k, k) * limit;
       problem_.b[k + 2] = 0.0;
     }
-    if (turn > 0 && changed <= kTolerance * largest) break;
-    const solve::CoulombReport found = coulomb_.solve(problem_, kTolerance, lambda_);
+    if (turn > 0 && changed <= kCoulombTolerance * largest) break;
+    const solve::CoulombReport found = coulomb_.solve(problem_, kCoulombTolerance, lambda_);
     report_.sweeps += found.sweeps;
     report_.newton += found.newton;
     report_.unsolved += found.solved ? 0 : 1;

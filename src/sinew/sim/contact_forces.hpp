@@ -9,6 +9,9 @@
 
 namespace sinew {
 
+/// To which the problem of all contacts is solved, beside the largest force (solve/coulomb).
+inline constexpr double kCoulombTolerance = 1e-12;
+
 /// What forces change by: of each contact, in the world, and of friction at each of the model's rubbing points [N].
 struct ContactChange {
   struct Force {

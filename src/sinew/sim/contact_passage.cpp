@@ -29,15 +29,9 @@ contact::Pose between(const contact::Pose& from, const contact::Pose& to, double
 
 /// A part of an object on its way.
 Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
-  Simplex own = side.local;
-  if (is_rigid(side.on)) {
-    const contact::Pose pose = between(motion.start.pose(side.on), motion.end.pose(side.on), t);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] = pose * own.x[i];
-    own.normal = pose.R * own.normal;
-    own.rim = pose.R * own.rim;
-    return own;
-  }
-  own = motion.start.placed(side);
+  if (is_rigid(side.on))
+    return contact::moved(between(motion.start.pose(side.on), motion.end.pose(side.on), t), side.local);
+  Simplex own = motion.start.placed(side);
   const Simplex to = motion.end.placed(side);
   for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] += t * (to.x[i] - own.x[i]);
   return own;
@@ -72,14 +66,8 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
   contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, 0.0, meetings);
   double deepest = 0.0;
   for (const contact::Meeting& own : meetings) {
-    const auto in_world = [](const contact::Pose& pose, Simplex part) {
-      for (std::size_t i = 0; i < static_cast<std::size_t>(part.corners()); ++i) part.x[i] = pose * part.x[i];
-      part.normal = pose.R * part.normal;
-      part.rim = pose.R * part.rim;
-      return part;
-    };
     const contact::Pose &of_a = own.swapped ? b : a, &of_b = own.swapped ? a : b;
-    deepest = std::max(deepest, -contact::nearest(in_world(of_a, own.a), in_world(of_b, own.b)).gap);
+    deepest = std::max(deepest, -contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b)).gap);
   }
   return deepest;
 }
@@ -137,10 +125,6 @@ double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double
 }
 
 }  // namespace
-
-std::string name_of_pair(const Model& model, int pair) {
-  return name_of(model, model.pairs[pair].a) + " and " + name_of(model, model.pairs[pair].b);
-}
 
 Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, double alarm) {
   Passage found;

@@ -29,7 +29,4 @@ struct Passage {
 /// little where nothing moved by more than that, or by the thickness of what may meet.
 Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, double alarm);
 
-/// "a and b", as a message names a pair.
-std::string name_of_pair(const Model& model, int pair);
-
 }  // namespace sinew

@@ -17,24 +17,11 @@ contact::Pose Moment::pose(const Collider& own) const {
 }
 
 contact::Simplex Moment::placed(const ContactSide& side) const {
+  if (is_rigid(side.on)) return contact::moved(pose(side.on), side.local);
   contact::Simplex own = side.local;
   for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) {
-    switch (side.on.kind) {
-      case Kind::solid:
-        own.x[i] = state.solids[side.on.number].x.col(side.nodes[i]);
-        break;
-      case Kind::rod:
-        own.x[i] = rod::position(rods[side.on.number], side.abscissae[i]);
-        break;
-      case Kind::obstacle:
-      case Kind::body:
-        own.x[i] = pose(side.on) * own.x[i];
-        break;
-    }
-  }
-  if (is_rigid(side.on)) {
-    own.normal = pose(side.on).R * own.normal;
-    own.rim = pose(side.on).R * own.rim;
+    own.x[i] = side.on.kind == Kind::solid ? Vec3(state.solids[side.on.number].x.col(side.nodes[i]))
+                                           : rod::position(rods[side.on.number], side.abscissae[i]);
   }
   return own;
 }
@@ -133,6 +120,10 @@ std::vector<Placement> frames_at(const Model& model, double time) {
 
 bool are_shapes(const Model& model, const PairModel& pair) {
   return is_rigid(pair.a) && is_rigid(pair.b) && !mesh_of(model, pair.a) && !mesh_of(model, pair.b);
+}
+
+std::string name_of_pair(const Model& model, int pair) {
+  return name_of(model, model.pairs[pair].a) + " and " + name_of(model, model.pairs[pair].b);
 }
 
 }  // namespace sinew

@@ -51,4 +51,7 @@ double thickness_of(const Model& model, const Collider& own);
 /// The name it has in the scene.
 const std::string& name_of(const Model& model, const Collider& own);
 
+/// "a and b", as a message names a pair of the model's.
+std::string name_of_pair(const Model& model, int pair);
+
 }  // namespace sinew

@@ -86,7 +86,7 @@ class Search {
     pair_ = number;
     const PairModel& own = start_.model.pairs[number];
     depth_ = std::max(depth_, own.depth);
-    if (are_shapes(own)) {
+    if (are_shapes(start_.model, own)) {
       each_meeting(own, alarm_,
                    [this](const ContactSide& a, const ContactSide& b, std::uint64_t key) { add(a, b, key); });
       return;
@@ -101,7 +101,7 @@ class Search {
     const PairModel& own = start_.model.pairs[number];
     if (own.a == own.b) return 0.0;
     double deepest = 0.0;
-    if (are_shapes(own)) {
+    if (are_shapes(start_.model, own)) {
       each_meeting(own, 0.0, [&](const ContactSide& a, const ContactSide& b, std::uint64_t) {
         deepest = std::max(deepest, -contact::nearest(start_.placed(a), start_.placed(b)).gap);
       });
@@ -173,11 +173,6 @@ class Search {
     own.part = part;
     own.a = a;
     own.b = b;
-  }
-
-  /// Whether neither of two has a surface of triangles or bends: contact/meeting is for these.
-  bool are_shapes(const PairModel& pair) const {
-    return is_rigid(pair.a) && is_rigid(pair.b) && !surfaces_.of(pair.a) && !surfaces_.of(pair.b);
   }
 
   template <class Visit>

@@ -257,17 +257,7 @@ void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
       const bool on_a = piece_of_rod(one.a) && one.a.on == other.a.on && same_part(one.b, other.b),
                  on_b = piece_of_rod(one.b) && one.b.on == other.b.on && same_part(one.a, other.a);
       if (dropped[j]) continue;
-      // A point of the rod at a face, beside an edge of it: there the rod bends round the edge, across its tangent.
-      const auto point_beside = [&](const ContactState& lone, const ContactState& piece) {
-        if (lone.a.on.kind != Kind::rod || lone.a.local.corners() != 1 || lone.b.on.kind == Kind::rod) return false;
-        if (!piece_of_rod(piece.a) || piece.a.on != lone.a.on || piece.b.on != lone.b.on) return false;
-        if (piece.b.local.radius > 0.0) return false;  // of what is round
-        const Place at = place_of(piece);
-        return std::abs(lone.a.abscissae[0] - at.s) < kSame * at.length;
-      };
-      if (point_beside(one, other)) dropped[i] = true;
-      if (point_beside(other, one)) dropped[j] = true;
-      if (dropped[i] || dropped[j] || (!on_a && !on_b) || (piece_of_rod(one.a) && piece_of_rod(one.b))) continue;
+      if ((!on_a && !on_b) || (piece_of_rod(one.a) && piece_of_rod(one.b))) continue;
       const Place p = place_of(one), q = place_of(other);
       if (std::abs(p.s - q.s) > kSame * std::min(p.length, q.length)) continue;
       const bool keep_first = !one.force.isZero(0.0) || (other.force.isZero(0.0) && !p.at_end);
@@ -313,6 +303,7 @@ double least_gap(const StepContext& context, double restitution, const Beginning
 }  // namespace
 
 double alarm_distance(const StepContext& context) {
+  if (context.model.pairs.empty()) return 0.0;
   double fastest = 0.0;
   for (const SolidState& solid : context.start.solids) fastest = std::max(fastest, solid.v.colwise().norm().maxCoeff());
   for (const RodState& rod : context.start.rods) {

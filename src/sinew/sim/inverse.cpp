@@ -437,8 +437,8 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
 /// The first round of a step of h, as the paper's.
 bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
                     const Linearization::Steer& steer) {
-  memory.context.start = start;
-  begin_step(memory, command, h);
+  memory.context.set(start, command, h);
+  begin_step(memory);
   place_held(memory.context, memory.iterate.state);
   return solve_there(memory, solid::Tangent::definite, times, steer);
 }

@@ -340,8 +340,8 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     pair.depth = 1.2 * own.depth;
     model.warnings.push_back({.code = "overlap_at_start",
                               .where = "contact",
-                              .message = name_of(model, pair.a) + " and " + name_of(model, pair.b) + " overlap by " +
-                                         text(1e3 * own.depth) + " mm at the start and are moved apart slowly",
+                              .message = name_of_pair(model, own.pair) + " overlap by " + text(1e3 * own.depth) +
+                                         " mm at the start and are moved apart slowly",
                               .remedy = "move one of them, or write `off: true` for the pair",
                               .value = own.depth,
                               .limit = 1e-6 * model.size,

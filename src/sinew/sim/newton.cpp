@@ -113,17 +113,19 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   Linearization& here = memory.here;
   Increment& increment = memory.increment;
   double stiffness = 0.0;
+  // Where more than `left` [m] of the rows is what no motion can answer, that is the reason.
+  const auto contradicts = [&](double left) {
+    const RedundantRows* const rows = here.contradicting(left);
+    if (!rows) return false;
+    report.status = Status::inconsistent;
+    report.detail = describe_contradiction(context.model, *rows, here.reduced().problem.c);
+    return true;
+  };
   const auto fail = [&](Status status, std::string detail) {
     report.contact = here.contact_report();
     report.status = status;
     report.detail = std::move(detail);
-    // Where what is left of the rows is what no motion can answer, that is the reason.
-    const double left =
-        std::max(0.5 * report.violation, 10.0 * context.model.scene.newton.tolerance * context.model.size);
-    if (const RedundantRows* rows = here.contradicting(left)) {
-      report.status = Status::inconsistent;
-      report.detail = describe_contradiction(context.model, *rows, here.reduced().problem.c);
-    }
+    contradicts(std::max(0.5 * report.violation, 10.0 * context.model.scene.newton.tolerance * context.model.size));
     return report;
   };
   const auto complete = [&] {
@@ -132,12 +134,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.contact = here.contact_report();
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
-    if (const double left = std::max(0.5 * report.violation, 1e-4 * context.model.size); rules.fixed) {
-      if (const RedundantRows* rows = here.contradicting(left)) {
-        report.status = Status::inconsistent;
-        report.detail = describe_contradiction(context.model, *rows, here.reduced().problem.c);
-      }
-    }
+    if (rules.fixed) contradicts(std::max(0.5 * report.violation, 1e-4 * context.model.size));
     if (!context.model.pairs.empty() && accepted(report.status)) {
       if (std::string gained = contact_adds_energy(context, iterate.state); !gained.empty()) {
         report.status = Status::max_iterations;
@@ -188,9 +185,10 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       return where.empty() ? fail(Status::diverged, "forces are not finite") : fail(Status::inverted, where);
     }
     const Convergence converged = convergence_of(context.model, here, stiffness);
+    const double contact_error = rules.fixed ? 0.0 : here.contact_error();
     if (rules.fixed ? report.newton == rules.limit
                     : report.newton > 0 && converged.met &&
-                          here.contact_error() <= context.model.scene.newton.tolerance * context.model.size) {
+                          contact_error <= context.model.scene.newton.tolerance * context.model.size) {
       report.at_floor = !rules.fixed && converged.at_floor;
       write_forces(here, iterate.state);
       return complete();
@@ -198,7 +196,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     // With contacts, whose curvature the tangent lacks, an iteration that contracts steadily is let go on beyond its
     // limit: to begin again with half the step costs more.
     const double size = context.model.size,
-                 off = std::max({report.residual, report.violation / size, here.contact_error() / size});
+                 off = std::max({report.residual, report.violation / size, contact_error / size});
     steady = off < kContracts * left_off ? steady + 1 : 0;
     left_off = off;
     const int limit = steady >= kSteady && !context.model.pairs.empty() ? kPatience * rules.limit : rules.limit;
@@ -206,9 +204,10 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (!here.reduced().redundant.empty() && report.newton > 1) {  // forces are balanced, and rows do not get nearer
       const bool balanced_forces = here.largest() <= 1e-6 * here.scale();
       const bool stays = contradiction > 0.0 && report.violation > 0.999 * contradiction;
-      const RedundantRows* const rows = balanced_forces && stays ? here.contradicting(0.9 * report.violation) : nullptr;
-      if (rows)
-        return fail(Status::inconsistent, describe_contradiction(context.model, *rows, here.reduced().problem.c));
+      if (balanced_forces && stays && contradicts(0.9 * report.violation)) {
+        report.contact = here.contact_report();
+        return report;
+      }
       contradiction = report.violation;
     }
     std::string failed;

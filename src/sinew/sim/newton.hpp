@@ -103,9 +103,9 @@ StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
   return report;
 }
 
-/// Context and first guess of a step of h from its start in Memory::context to a command; returns the seconds that
-/// finding contacts took.
-double begin_step(Memory& memory, const Command& command, double h);
+/// First guess of a step that Memory::context describes, and the contacts looked for in it; returns the seconds that
+/// finding them took.
+double begin_step(Memory& memory);
 
 /// One step of h from a state to a command, by these rules: `step`, `inverse_step`. On failure the state stays.
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state);

@@ -53,8 +53,7 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-double begin_step(Memory& memory, const Command& command, double h) {
-  memory.context.set(command, h);
+double begin_step(Memory& memory) {
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
@@ -89,7 +88,7 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
     const Lent lent(state, memory.context.start);
     memory.context.set(command, h);
     report = look_until_found(memory, alarm_distance(memory.context), [&] {
-      const double spent = begin_step(memory, command, h);
+      const double spent = begin_step(memory);
       // What is prescribed stands in the context already.
       StepReport own = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
       own.times.contact += spent;
