@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <cmath>
 #include <set>
 
 #include "sinew/commands.hpp"
@@ -8,6 +9,7 @@
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/sliding_rods.hpp"
 #include "sinew/solid/mesh_order.hpp"
 #include "sinew/solid/mesh_summary.hpp"
 
@@ -82,6 +84,23 @@ void print(const Glue& glue, const CouplingFacts& facts) {
   fmt::print("{} nodes of solid {} carried by body {}\n", facts.kept, glue.solid, glue.body);
 }
 
+/// What hangs on the sections and points of a rod that slides.
+void print_sliding(const Model& model, int number, const Slide& slide) {
+  const CouplingFacts& facts = model.couplings[number];
+  if (const double equivalent = equivalent_sections(model, number); equivalent < kFewSections) {
+    fmt::print(
+        "  {:.2g} sections of order {} between two points: where the rod bends while it slides, its own part of the "
+        "force along it (M^2 / 2 B) swings by {:.2g} %\n",
+        facts.sections, facts.order, 100.0 * ripple_of(equivalent));
+  }
+  if (slide.friction > 0.0 && std::isfinite(facts.spacing)) {
+    fmt::print(
+        "  friction {:.3g}: a moment at an end of the channel rubs with {:.3g} N for each N m, in inverse proportion "
+        "to the spacing of the points ({:.3g} mm)\n",
+        slide.friction, slide.friction * pressed_by_moment(facts.spacing), 1e3 * facts.spacing);
+  }
+}
+
 void print(const Slide& slide, const CouplingFacts& facts) {
   fmt::print("rod {} in solid {}: {} of {} points kept\n", slide.rod, slide.solid, facts.kept, facts.asked);
   if (facts.outside > 0) {
@@ -96,6 +115,8 @@ void print(const Slide& slide, const CouplingFacts& facts) {
 void print_coupling(const Model& model, std::size_t number) {
   fmt::print("coupling {}: ", number);
   std::visit([&](const auto& own) { print(own, model.couplings[number]); }, model.scene.couplings[number]);
+  if (const Slide* const slide = std::get_if<Slide>(&model.scene.couplings[number]))
+    print_sliding(model, static_cast<int>(number), *slide);
 }
 
 void print_contact(const Model& model) {

@@ -151,7 +151,7 @@ nb::list tuples_of(const std::vector<Warning>& warnings) {
   nb::list all;
   for (const Warning& own : warnings)
     all.append(nb::make_tuple(own.code, own.where, own.message, own.remedy, own.time, own.value, own.limit, own.unit,
-                              own.steps));
+                              own.steps, own.latest));
   return all;
 }
 
@@ -160,8 +160,8 @@ std::vector<Warning> restored_warnings(nb::handle all) {
   for (const nb::handle own : nb::iter(all)) {
     const auto text = [&](int i) { return nb::cast<std::string>(own[i]); };
     const auto number = [&](int i) { return nb::cast<double>(own[i]); };
-    warnings.push_back(
-        {text(0), text(1), text(2), text(3), number(4), number(5), number(6), text(7), nb::cast<long>(own[8])});
+    warnings.push_back({text(0), text(1), text(2), text(3), number(4), number(5), number(6), text(7),
+                        nb::cast<long>(own[8]), nb::cast<bool>(own[9])});
   }
   return warnings;
 }

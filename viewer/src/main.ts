@@ -170,7 +170,7 @@ function showStatus(): void {
   parts.push([head.status, "state"]);
   for (const text of warnings) parts.push([text, "warning"]);
   if (head.halvings) parts.push([`step halved ${head.halvings}×`, "warning"]);
-  if (head.targets.startsWith("reached")) parts.push([head.targets, "fine"]);
+  if (/^reached(?! by)/.test(head.targets)) parts.push([head.targets, "fine"]);
   else if (head.targets) parts.push([`${farOff()}${head.targets.replaceAll("actuators.", "")}`, "warning"]);
   if (!touched && live && head.playing) {
     const what = [...(scene!.head.targets.some((own) => own.position) ? ["the red ball"] : []), ...(scene!.head.solids.length > 0 ? ["the body"] : [])];

@@ -16,11 +16,16 @@ Vec3 into(const Pose& pose, const Vec3& x) { return pose.R.transpose() * (x - po
 /// stands.
 void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& points) {
   Vec3 down(-n.x(), -n.y(), 0.0);
-  down = down.norm() > 1e-9 ? Vec3(down.normalized()) : Vec3(Vec3::UnitX());
+  const bool stands = down.norm() <= 1e-9;
+  down = stands ? Vec3(Vec3::UnitX()) : Vec3(down.normalized());
   const Vec3 across(-down.y(), down.x(), 0.0);
   for (const double end : {-0.5, 0.5}) {
     const Vec3 cap(0.0, 0.0, end * cylinder.length);
-    points.push_back(circle_at(cap, Vec3::UnitZ(), cylinder.radius));
+    if (stands) {  // every direction is as low
+      points.push_back(point_at(cap + cylinder.radius * down, 0.0));
+    } else {
+      points.push_back(circle_at(cap, Vec3::UnitZ(), cylinder.radius));
+    }
     for (const Vec3& direction : {across, Vec3(-down), Vec3(-across)})
       points.push_back(point_at(cap + cylinder.radius * direction, 0.0));
   }

@@ -14,7 +14,7 @@ bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)
 bool Warning::operator==(const Warning& other) const {
   return code == other.code && where == other.where && message == other.message && remedy == other.remedy &&
          same(time, other.time) && same(value, other.value) && same(limit, other.limit) && unit == other.unit &&
-         steps == other.steps;
+         steps == other.steps && latest == other.latest;
 }
 
 std::string to_string(const Warning& warning) {
@@ -45,7 +45,7 @@ void merge(const Warning& warning, std::vector<Warning>& list) {
     return;
   }
   found->steps += warning.steps;
-  if (std::abs(warning.value) > std::abs(found->value)) {
+  if (warning.latest || std::abs(warning.value) > std::abs(found->value)) {
     found->message = warning.message;
     found->value = warning.value;
     found->limit = warning.limit;

@@ -18,7 +18,8 @@ struct Warning {
   double value = NAN;        ///< at its worst, in `unit`; NaN where nothing is measured
   double limit = NAN;        ///< beyond which it is warned of, in `unit`
   std::string unit = {};
-  long steps = 0;  ///< accepted steps in which it was seen
+  long steps = 0;       ///< accepted steps in which it was seen
+  bool latest = false;  ///< of what adds up over a run: the latest value is told, not the worst
 
   bool operator==(const Warning& other) const;  ///< NaN equals NaN
 };

@@ -89,12 +89,13 @@ class Decoder {
   }
   std::vector<Warning> warnings(std::uint64_t count) {
     std::vector<Warning> values;
-    if (!fits(count, 64)) return values;  // (each takes 64 bytes at least)
+    if (!fits(count, 72)) return values;  // (each takes 72 bytes at least)
     for (std::uint64_t i = 0; i < count && fits_; ++i) {
       Warning& own = values.emplace_back();
       for (std::string* text : {&own.code, &own.where, &own.message, &own.remedy, &own.unit}) *text = string();
       for (double* value : {&own.time, &own.value, &own.limit}) *value = f64();
-      own.steps = 1;
+      own.steps = static_cast<long>(u32());
+      own.latest = u32() != 0;
     }
     return values;
   }
@@ -159,6 +160,8 @@ std::string encode(const RecordedStep& step) {
   for (const Warning& own : step.warnings) {
     for (const std::string* text : {&own.code, &own.where, &own.message, &own.remedy, &own.unit}) out.string(*text);
     for (const double value : {own.time, own.value, own.limit}) out.f64(value);
+    out.u32(static_cast<std::uint32_t>(own.steps));
+    out.u32(own.latest ? 1 : 0);
   }
   return out.bytes();
 }

@@ -25,12 +25,9 @@ using Json = nlohmann::ordered_json;
 std::filesystem::path recording_path(const std::filesystem::path& folder) { return folder / "run.sinew"; }
 
 io::RecordedStep recorded(const Model& model, const State& state, const StepReport& report) {
-  std::string targets = describe(model, report.aim);
-  if (const Warning* off = find_warning(report.warnings, "linearisation_off"); off && targets.starts_with("reached"))
-    targets += fmt::format(" by a linearisation that is {:.2g} % off", 100.0 * off->value);
   return {state.time,
           std::string(to_string(report.status)),
-          targets,
+          describe(model, report.aim),
           static_cast<std::uint32_t>(report.newton),
           report.residual,
           report.violation,
@@ -309,13 +306,17 @@ void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& st
   const std::size_t kinetic = column("energy.kinetic"), elastic = column("energy.elastic"),
                     work = column("energy.work"), dissipated = column("energy.dissipated");
   double largest = 0.0, peak = -INFINITY, done = 0.0, before = 0.0;
-  // Work is known by the mean of forces at the ends of steps, so to about what it changes by from step to step.
+  // Work is known by the mean of forces at the ends of steps, so to about what it changes by from step to step: since
+  // what was dissipated was at its most.
   double unsure = 0.0;
   for (const io::RecordedStep& step : steps) {
     if (dissipated >= step.signals.size()) return;
     largest = std::max(largest, step.signals[kinetic] + step.signals[elastic]);
-    peak = std::max(peak, step.signals[dissipated]);
     const double more = step.signals[work] - done;
+    if (step.signals[dissipated] > peak) {
+      peak = step.signals[dissipated];
+      unsure = 0.0;
+    }
     unsure += 0.5 * std::abs(more - before);
     done = step.signals[work];
     before = more;

@@ -8,6 +8,8 @@
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/sim/sliding_rods.hpp"
+#include "sinew/sim/work.hpp"
 
 namespace sinew {
 
@@ -16,6 +18,7 @@ namespace {
 constexpr double kBeyondBearing = 1e6;         ///< times Model::bearing
 constexpr double kLinearisedResidual = 0.05;   ///< of the largest force: of a step of `newton: n`
 constexpr double kLinearisedViolation = 1e-3;  ///< of the scene's size: the same
+constexpr double kLinearisedOff = 0.05;        ///< of the motion: how far it may end beside a converged step
 
 std::string number(double value) {
   char text[32];
@@ -39,7 +42,12 @@ class Warnings {
 };
 
 void assess_cables(const Model& model, const State& state, Warnings& warnings) {
-  const double rounding = 1e-9 * model.bearing;
+  // A push by rounding is none: beside the largest force of a motor or cable, and what a soft body bears at all.
+  double largest = 0.0;
+  for (const double force : state.actuators) largest = std::max(largest, std::abs(force));
+  for (const GeometricCableModel& cable : model.cables)
+    largest = std::max(largest, std::abs(state.lambda[cable.length_row]));
+  const double rounding = std::max(1e-9 * largest, std::min(1e-9 * model.bearing, 1e-6));
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const ActuatorModel& own = model.actuators[i];
     const double force = state.actuators[i];
@@ -49,7 +57,7 @@ void assess_cables(const Model& model, const State& state, Warnings& warnings) {
                     .message = "the tendon pushes with " + number(-force) + " N; a real one would go slack",
                     .remedy = "drive it by `tension`, or draw in more of it",
                     .value = -force,
-                    .limit = 0.0,
+                    .limit = rounding,
                     .unit = "N"});
     }
     // A thin rod whose base is held or drawn out of the body along -x is a thread, which cannot push to speak of. One
@@ -83,7 +91,7 @@ void assess_cables(const Model& model, const State& state, Warnings& warnings) {
                   .message = "the geometric cable pushes with " + number(-tension) + " N; a real one would go slack",
                   .remedy = "pull it, by force instead of displacement if need be",
                   .value = -tension,
-                  .limit = 0.0,
+                  .limit = rounding,
                   .unit = "N"});
   }
 }
@@ -130,34 +138,40 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
   }
 }
 
+/// "take shorter steps, or leave `newton: 1` out".
+std::string remedy_of_linearisation(const Model& model) {
+  return "take shorter steps, or leave `newton: " + std::to_string(model.scene.newton.iterations) + "` out";
+}
+
 void assess_linearisation(const Model& model, const StepReport& step, Warnings& warnings) {
   if (step.residual > kLinearisedResidual) {
-    warnings.add(
-        {.code = "linearisation_off",
-         .where = "newton",
-         .message = "the step leaves " + number(100.0 * step.residual) + " % of the largest force unbalanced",
-         .remedy = "take shorter steps, or leave `newton: " + std::to_string(model.scene.newton.iterations) + "` out",
-         .value = step.residual,
-         .limit = kLinearisedResidual});
+    warnings.add({.code = "linearisation_off",
+                  .where = "newton",
+                  .message = "the step leaves " + number(100.0 * step.residual) + " % of the largest force unbalanced",
+                  .remedy = remedy_of_linearisation(model),
+                  .value = step.residual,
+                  .limit = kLinearisedResidual});
   }
   if (step.violation > kLinearisedViolation * model.size) {
-    warnings.add(
-        {.code = "constraints_off",
-         .where = "newton",
-         .message = "constraints are missed by " + number(1e3 * step.violation) + " mm",
-         .remedy = "take shorter steps, or leave `newton: " + std::to_string(model.scene.newton.iterations) + "` out",
-         .value = step.violation,
-         .limit = kLinearisedViolation * model.size,
-         .unit = "m"});
+    warnings.add({.code = "constraints_off",
+                  .where = "newton",
+                  .message = "constraints are missed by " + number(1e3 * step.violation) + " mm",
+                  .remedy = remedy_of_linearisation(model),
+                  .value = step.violation,
+                  .limit = kLinearisedViolation * model.size,
+                  .unit = "m"});
   }
 }
 
 void assess_redundancy(const Model& model, const Linearization& here, Warnings& warnings) {
   for (const RedundantRows& own : here.reduced().redundant) {
     // Those of the start are told by the model, whatever posture adds to them.
+    std::vector<int> dependent;
+    for (std::size_t i = 0; i < own.rows.size(); ++i) {
+      if (own.null.row(static_cast<Eigen::Index>(i)).norm() > 1e-6) dependent.push_back(own.rows[i]);
+    }
     const bool known = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const std::vector<int>& rows) {
-      return std::any_of(rows.begin(), rows.end(),
-                         [&own](int row) { return std::binary_search(own.rows.begin(), own.rows.end(), row); });
+      return std::includes(rows.begin(), rows.end(), dependent.begin(), dependent.end());
     });
     if (known) continue;
     warnings.add({.code = "redundant_constraints",
@@ -180,6 +194,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   assess_contacts(model, fixed, report, warnings);
   if (fixed) assess_linearisation(model, report, warnings);
   assess_redundancy(model, here, warnings);
+  for (Warning& own : assess_sliding_rods(model, next)) warnings.add(std::move(own));
   if (report.unstable) {
     warnings.add({.code = "unstable",
                   .where = "",
@@ -196,6 +211,23 @@ void assess(const StepContext& context, const Linearization& here, const State& 
          .value = static_cast<double>(folded),
          .limit = 0.0});
   }
+}
+
+bool leaves_much(const Model& model, const StepReport& step) {
+  return step.residual > kLinearisedResidual || step.violation > kLinearisedViolation * model.size;
+}
+
+void warn_of_linearisation(const Model& model, double time, StepReport& report) {
+  if (!(report.off > kLinearisedOff)) return;
+  Warnings(time, report.warnings)
+      .add({.code = "linearised_step_off",
+            .where = "newton",
+            .message = "the last linearised step is " + number(100.0 * report.off) +
+                       " % off: so far beside it, as a part of the way from the start, ends a converged one",
+            .remedy = remedy_of_linearisation(model),
+            .value = report.off,
+            .limit = kLinearisedOff,
+            .latest = true});
 }
 
 std::string beyond_bearing(const Model& model, const State& state) {
@@ -245,8 +277,10 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   constexpr double kGain = 1e-3;
   const Model& model = context.model;
   if (context.rate == 0.0 || next.contacts.empty()) return {};
-  // What overlaps at the start of a run is lifted apart.
-  if (std::any_of(model.pairs.begin(), model.pairs.end(), [](const PairModel& pair) { return pair.depth > 0.0; }))
+  // What overlaps at the start of a run is lifted apart as long as it does.
+  if (std::any_of(next.contacts.begin(), next.contacts.end(), [&model](const ContactState& own) {
+        return model.pairs[own.pair].depth > 0.0 && own.gap < -1e-9 * model.size;
+      }))
     return {};
   // Most steps are done with here: nothing that is loose has become faster than by falling.
   const Loose before = loose_energy(model, context.start), after = loose_energy(model, next);
@@ -254,7 +288,8 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   const EnergyBalance from = energy_balance(model, context.start), to = energy_balance(model, next);
   const double gain = to.total() - from.total() - (next.energies.work - context.start.energies.work);
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
-  if (!(gain > kGain * size) || !(size > 1e-14 * model.bearing * model.size)) return {};
+  if (!(gain > kGain * size + work_uncertainty(context, next)) || !(size > 1e-14 * model.bearing * model.size))
+    return {};
   return "contacts have added " + number(gain) + " J, " + number(gain / size) + " of the kinetic and elastic energy";
 }
 

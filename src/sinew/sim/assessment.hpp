@@ -15,6 +15,12 @@ namespace sinew {
 /// enough, constraints that have become redundant.
 void assess(const StepContext& context, const Linearization& here, const State& next, StepReport& report);
 
+/// Whether a step of `newton: n` leaves more of its forces or constraints than it is warned of.
+bool leaves_much(const Model& model, const StepReport& step);
+
+/// Adds to a report how far such a step is off (`StepReport::off`), if that is more than a twentieth of its motion.
+void warn_of_linearisation(const Model& model, double time, StepReport& report);
+
 /// Names constraints or contacts whose forces are beyond what bodies can bear (a million times Model::bearing): what
 /// they hold, nothing answers. Empty if there are none.
 std::string beyond_bearing(const Model& model, const State& state);

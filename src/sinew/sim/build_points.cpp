@@ -6,6 +6,7 @@
 #include "sinew/constraint/sliding.hpp"
 #include "sinew/rod/path.hpp"
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/sliding_rods.hpp"
 
 namespace sinew::building {
 
@@ -246,6 +247,18 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   }
   const std::vector<PointModel> kept = independent_points(model, candidates, facts);
   facts.kept = static_cast<int>(kept.size());
+  if (line.rod >= 0) {
+    std::vector<double> sliding;
+    for (const PointModel& point : kept) {
+      if (!point.fixed) sliding.push_back(point.abscissa);
+    }
+    std::sort(sliding.begin(), sliding.end());
+    const SlideResolution coarsest = slide_resolution(model.rods[line.rod].rod, sliding);
+    facts.spacing = coarsest.spacing;
+    facts.sections = coarsest.sections;
+    facts.order = coarsest.order;
+    facts.rubs = slide.friction > 0.0 && !sliding.empty();
+  }
   model.points.insert(model.points.end(), kept.begin(), kept.end());
   model.couplings.push_back(facts);
   if (2 * facts.outside > facts.asked)

@@ -100,24 +100,27 @@ double farthest(const StepMotion& motion, const Collider& own) {
   return most;
 }
 
-constexpr int kPlaces = 64;  ///< at most so many on the way are looked at
+constexpr int kPlaces = 64;        ///< on the way are looked at at least where parts are near
+constexpr int kMostPlaces = 4096;  ///< and at most: a motion of a thousand times the thinner of the two
 
 /// The deepest overlap [m] of two parts on their way, beyond the one they start with; 0 where they stay apart.
-double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed) {
+double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin) {
   const double before = std::min(0.0, separation(motion, own, 0.0));
+  // (No thin thing is stepped over, up to what a motion may cost at all.)
+  const double shortest = std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0 / kPlaces);
   double deepest = 0.0;
   for (double t = 0.0;;) {
     const double gap = separation(motion, own, t);
     deepest = std::max(deepest, before - gap);
     if (t >= 1.0) return deepest;
-    t = std::min(1.0, t + std::max(gap / speed, 1.0 / kPlaces));
+    t = std::min(1.0, t + std::max(gap / speed, shortest));
   }
 }
 
 /// The same of two shapes.
 double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
-  const int places = std::clamp(static_cast<int>(std::ceil(4.0 * speed / thin)), 1, kPlaces);
-  const double before = overlap_of_shapes(motion, pair, 0.0);
+  const int places = std::clamp(static_cast<int>(std::ceil(4.0 * speed / thin)), 1, kMostPlaces);
+  const double before = pair.depth > 0.0 ? overlap_of_shapes(motion, pair, 0.0) : 0.0;
   double deepest = 0.0;
   for (int i = 1; i <= places; ++i)
     deepest = std::max(deepest, overlap_of_shapes(motion, pair, static_cast<double>(i) / places) - before);
@@ -133,7 +136,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   if (room.touches.size() == next.contacts.size()) {
     for (std::size_t i = 0; i < room.touches.size(); ++i) {
       const int pair = next.contacts[i].pair;
-      const double depth = overlap_of(room, i);
+      const double depth = overlap_of(model, next, room, i);
       if (!(depth > std::max(kDeepest * room.thin[pair], found.depth))) continue;
       found.kind = Passage::Kind::passed;
       found.pair = pair;
@@ -158,29 +161,38 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const double speed = motion_of(pair.a) + motion_of(pair.b);
     found.alarm = std::max(found.alarm, speed);
     const double thin = room.thin[i];
+    const bool shapes = are_shapes(model, pair);
+    const bool known = shapes && std::any_of(room.found.begin(), room.found.end(),
+                                             [i](const auto& part) { return part.first == static_cast<int>(i); });
+    if (known) {  // parts that were not listed may have come in
+      const double depth = overlap_of_shapes(motion, pair, 1.0) - pair.depth;
+      if (depth > found.overlap) {
+        found.overlap = depth;
+        found.overlapping = static_cast<int>(i);
+      }
+    }
     // Two that were apart have to move by the thickness of both to get to each other's other side.
     if (speed <= std::min(alarm, 0.5 * thin)) continue;
-    const auto meets = [&](bool listed, double depth) {
-      const double most = listed ? kDeepest * thin : 1e-6 * model.size;
+    const auto meets = [&](bool was_found, double depth) {
+      const double most = was_found ? kDeepest * thin : 1e-6 * model.size;
       if (!(depth > most) || depth <= found.depth) return;
-      if (listed && found.kind == Passage::Kind::missed) return;
-      found.kind = listed ? Passage::Kind::passed : Passage::Kind::missed;
+      if (was_found && found.kind == Passage::Kind::missed) return;
+      found.kind = was_found ? Passage::Kind::passed : Passage::Kind::missed;
       found.pair = static_cast<int>(i);
       found.depth = depth;
     };
-    const auto listed = [&](const auto& like) {
-      return std::any_of(room.found.begin(), room.found.end(), [&](const auto& own) { return like(own); });
-    };
-    if (are_shapes(model, pair)) {
-      meets(listed([&](const auto& own) { return own.first == static_cast<int>(i); }),
-            deepest_of_shapes(motion, pair, speed, thin));
+    if (shapes) {
+      meets(known, deepest_of_shapes(motion, pair, speed, thin));
       continue;
     }
     candidates.clear();
-    search(start, speed, std::max(pair.depth, 1e-3 * model.size), room.surfaces, static_cast<int>(i), candidates);
+    search_whole(start, speed, std::max(pair.depth, 1e-3 * model.size), room.surfaces, static_cast<int>(i), candidates);
     for (const ContactState& own : candidates) {
       const std::pair<int, std::uint64_t> key(own.pair, own.part);
-      meets(std::binary_search(room.found.begin(), room.found.end(), key), deepest_of_parts(motion, own, speed));
+      // (What the chord of a bent rod overlaps at the start would not be found with any other alarm distance either.)
+      const bool was_found =
+          std::binary_search(room.found.begin(), room.found.end(), key) || separation(motion, own, 0.0) < 0.0;
+      meets(was_found, deepest_of_parts(motion, own, speed, thin));
     }
   }
   return found;

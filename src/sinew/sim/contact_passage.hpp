@@ -20,9 +20,11 @@ namespace sinew {
 struct Passage {
   enum class Kind { none, missed, passed };
   Kind kind = Kind::none;
-  int pair = -1;       ///< of the model's, the deepest
-  double depth = 0.0;  ///< [m] of its overlap on the way
-  double alarm = 0.0;  ///< [m] within which contacts are to be looked for to find all that may meet
+  int pair = -1;         ///< of the model's, the deepest
+  double depth = 0.0;    ///< [m] of its overlap on the way
+  double overlap = 0.0;  ///< [m] in which two rigid shapes end that were found to touch, whatever parts of them
+  int overlapping = -1;  ///< of the model's pairs, the one with that
+  double alarm = 0.0;    ///< [m] within which contacts are to be looked for to find all that may meet
 };
 
 /// Looks along the motion from the start of a step to `next`. `alarm` is that within which `room` was filled. Costs

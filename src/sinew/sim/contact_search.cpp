@@ -96,6 +96,9 @@ class Search {
     edges(own.a, own.b);
   }
 
+  /// Whether pieces of rods count however deep their chords lie in what they bend round.
+  bool whole_pieces = false;
+
   /// How deep points of one are in the other.
   double overlap(int number) {
     const PairModel& own = start_.model.pairs[number];
@@ -307,7 +310,8 @@ class Search {
   }
 
   /// Whether a gap is one that may close, or has just closed.
-  bool matters(double gap) const { return gap < alarm_ && gap > -depth_; }
+  bool matters(double gap) const { return matters(gap, depth_); }
+  bool matters(double gap, double depth) const { return gap < alarm_ && gap > -depth; }
 
   void points_and_faces(const Collider& poking, const Collider& faced, Part part) {
     if (faced.kind == Kind::rod) return;  // thin: edges meet it
@@ -436,7 +440,9 @@ class Search {
         const Edge &a = turned ? *other : one, &b = turned ? one : *other;
         if (side_by_side(a.placed, b.placed)) continue;
         const contact::Nearest found = contact::nearest(a.placed, b.placed);
-        if (!matters(found.gap) || !within(found, a.side, b.side)) continue;
+        const bool bends = whole_pieces && (rod_piece(a.side) || rod_piece(b.side));
+        const double thick = bends ? a.placed.radius + b.placed.radius : 0.0;
+        if (!matters(found.gap, std::max(depth_, thick)) || !within(found, a.side, b.side)) continue;
         if (found.normal.dot(b.placed.normal) < 0.0 || found.normal.dot(a.placed.normal) > 0.0) continue;
         add(a.side, b.side, key(Part::edges, one.number, other->number));
       }
@@ -449,6 +455,8 @@ class Search {
     const Vec3 d = a.x[1] - a.x[0], e = b.x[1] - b.x[0];
     return a.radius + b.radius == 0.0 && d.cross(e).squaredNorm() < 1e-4 * d.squaredNorm() * e.squaredNorm();
   }
+
+  static bool rod_piece(const ContactSide& side) { return side.on.kind == Kind::rod && side.local.corners() == 2; }
 
   /// Whether two edges meet between their ends: there, points do. Pieces of rods follow each other.
   static bool within(const contact::Nearest& found, const ContactSide& a, const ContactSide& b) {
@@ -482,6 +490,13 @@ class Search {
 void search(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
             std::vector<ContactState>& found) {
   Search(start, alarm, depth, surfaces, found).pair(number);
+}
+
+void search_whole(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
+                  std::vector<ContactState>& found) {
+  Search search(start, alarm, depth, surfaces, found);
+  search.whole_pieces = true;
+  search.pair(number);
 }
 
 double overlap(const Moment& now, const Surfaces& surfaces, int number) {

@@ -41,6 +41,11 @@ class Surfaces {
 void search(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
             std::vector<ContactState>& found);
 
+/// The same, with all pieces of rods, however deep their chords lie in what the rod bends round and its curve only
+/// touches: what goes through must not be overlooked.
+void search_whole(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
+                  std::vector<ContactState>& found);
+
 /// How deep [m] points of one object of a pair are inside the other; 0 where none is.
 double overlap(const Moment& now, const Surfaces& surfaces, int number);
 

@@ -184,6 +184,33 @@ void refine_place(const Moment& now, const ContactState& own, const Simplex& a, 
   }
 }
 
+/// The normal of a rod's point on a face, perpendicular to the rod. A smooth rod touches a flat face with its tangent
+/// in it; a point that does not is one beside an edge, round which the rod bends, and no normal force pulls along a
+/// rod.
+void face_across(const Moment& now, const ContactSide& side, double radius, const Simplex& face,
+                 contact::Nearest& found) {
+  constexpr double kSteepest = 0.5;  // sine of the angle of rod and face beyond which its end hits, not its side
+  const rod::Configuration& shape = now.rods[side.on.number];
+  const double s = side.abscissae[0];
+  if (s <= 0.0 || s >= shape.rod->length()) return;
+  const rod::CentrePoint point = rod::centre_point(shape, s);
+  const Vec3 tangent = point.derivative.normalized();
+  const double along = tangent.dot(found.normal);
+  if (std::abs(along) > kSteepest) return;
+  const double cosine = std::sqrt(1.0 - along * along);
+  const Vec3 normal = (found.normal - along * tangent) / cosine;
+  const double distance = (found.gap + radius) / cosine;
+  if (face.kind == Simplex::Kind::triangle) {  // where the line along the normal meets it, if it does
+    const Vec3 d = face.x[1] - face.x[0], e = face.x[2] - face.x[0], up = d.cross(e),
+               to = point.position - distance * normal - face.x[0];
+    const double size = up.squaredNorm(), u = to.cross(e).dot(up) / size, v = d.cross(to).dot(up) / size;
+    if (!(std::min({u, v, 1.0 - u - v}) >= 0.0)) return;
+    found.b = {1.0 - u - v, u, v};
+  }
+  found.normal = normal;
+  found.gap = distance - radius;
+}
+
 /// Brings a contact of a rod's piece from its chord to its true curve (`refine_place`). There the tangent of the curve
 /// stands for it, a line that is carried by the cross-section: the normal is perpendicular to it (and to the other
 /// line, if that is none that ends there), so that no normal force pulls along a rod; the feet are where the two lines
@@ -196,7 +223,11 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
   };
   if (curved(own.a, a) || curved(own.b, b)) refine_place(now, own, a, b, found);
   const LinePoint first = line_point(now, own.a, a, found.a), second = line_point(now, own.b, b, found.b);
-  if (!curved(own.a, a) && !curved(own.b, b)) return {first.x, second.x};
+  if (!curved(own.a, a) && !curved(own.b, b)) {
+    if (own.a.on.kind == Kind::rod && (b.kind == Simplex::Kind::plane || b.kind == Simplex::Kind::triangle))
+      face_across(now, own.a, a.radius, b, found);
+    return {first.x, second.x};
+  }
   constexpr double kParallel = 0.05;  // sine of the angle below which two lines are side by side
   const Vec3 &t = first.tangent, &u = second.tangent, apart = first.x - second.x, both = t.cross(u);
   Vec3 n = found.normal;
@@ -347,14 +378,14 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     own.force = old->force;
     own.normal = old->normal;
   }
+  room.found.clear();
+  for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
   drop_neighbours(start, found);
   iterate.contacts = std::move(found);
   if (room.thin.empty()) {
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));
   }
-  room.found.clear();
-  for (const ContactState& own : iterate.contacts) room.found.emplace_back(own.pair, own.part);
   room.least.clear();
   room.gaps.clear();
   room.facings.clear();

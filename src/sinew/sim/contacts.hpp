@@ -57,9 +57,11 @@ inline double abscissa_of(const ContactSide& side, const std::array<double, 3>& 
                                    : weights[0] * side.abscissae[0] + weights[1] * side.abscissae[1];
 }
 
-/// [m] by which a contact of the last iterate overlaps more than it may; 0 where it does not.
-inline double overlap_of(const ContactRoom& room, std::size_t contact) {
-  return std::max(0.0, std::min(0.0, room.least[contact]) - room.touches[contact].u[0]);
+/// [m] by which a contact of the last iterate overlaps; 0 where it does not. Of a pair that overlapped when the run
+/// began, beyond what it may on its way apart.
+inline double overlap_of(const Model& model, const State& iterate, const ContactRoom& room, std::size_t contact) {
+  const bool began = model.pairs[iterate.contacts[contact].pair].depth > 0.0;
+  return std::max(0.0, (began ? std::min(0.0, room.least[contact]) : 0.0) - room.touches[contact].u[0]);
 }
 
 /// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,

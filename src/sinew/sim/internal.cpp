@@ -28,15 +28,21 @@ Eigen::MatrixXd no_internal(const RodModel& rod) {
 void write_internal(const std::vector<rod::Balance>& along, RodState& state) {
   Eigen::MatrixXd& internal = state.internal;
   if (std::ssize(along) > internal.cols()) {  // more contacts than there is room for: the smallest jumps are left out
-    std::vector<double> jumps;
-    for (const rod::Balance& at : along) jumps.push_back((at.beyond - at.before).squaredNorm());
-    std::vector<double> sorted = jumps;
+    // (None of the base, of sections' ends and of the tip, which have none or are the last.)
     const auto kept = static_cast<std::size_t>(internal.cols());
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(kept - 1), sorted.end(),
-                     std::greater<>());
+    std::vector<std::size_t> inner;
+    for (std::size_t i = 1; i + 1 < along.size(); ++i) {
+      if (along[i].beyond != along[i].before) inner.push_back(i);
+    }
+    const std::size_t excess = std::min(along.size() - kept, inner.size());
+    std::stable_sort(inner.begin(), inner.end(), [&along](std::size_t a, std::size_t b) {
+      return (along[a].beyond - along[a].before).squaredNorm() < (along[b].beyond - along[b].before).squaredNorm();
+    });
+    std::vector<bool> left_out(along.size(), false);
+    for (std::size_t i = 0; i < excess; ++i) left_out[inner[i]] = true;
     std::vector<rod::Balance> large;
     for (std::size_t i = 0; i < along.size() && large.size() < kept; ++i) {
-      if (jumps[i] >= sorted[kept - 1]) large.push_back(along[i]);
+      if (!left_out[i]) large.push_back(along[i]);
     }
     return write_internal(large, state);
   }

@@ -95,7 +95,7 @@ ContactReport Linearization::contact_report() const {
   ContactReport report = contact_forces_.report();
   report.contacts = static_cast<int>(contacts_.playing.size() + context_->model.rubbing.size());
   for (std::size_t i = 0; i < std::min(contacts_.touches.size(), iterate_->contacts.size()); ++i) {
-    if (const double own = overlap_of(contacts_, i); own > report.penetration) {
+    if (const double own = overlap_of(context_->model, *iterate_, contacts_, i); own > report.penetration) {
       report.penetration = own;
       report.deepest_pair = iterate_->contacts[i].pair;
     }

@@ -266,6 +266,10 @@ struct CouplingFacts {
   int cable = -1;
   int asked = 0, kept = 0, outside = 0;
   double farthest = 0.0;           ///< [m] largest distance of a point from the mesh
+  double spacing = INFINITY;       ///< [m] between neighbouring sliding points, the smallest
+  double sections = INFINITY;      ///< of the rod between two of them, where these are the fewest
+  int order = 0;                   ///< of the bending strains there
+  bool rubs = false;               ///< there is friction in the channel
   std::vector<double> no_unknown;  ///< abscissae of points that touch no free unknown
   std::vector<double> redundant;   ///< abscissae of points that the kept ones of the same element already determine
 };

@@ -103,7 +103,11 @@ void change_along(const ContextAt& at, Memory& memory, const Iterate& iterate, S
   memory.there.evaluate(memory.ahead, carried, times);
   memory.here.solve(memory.there, memory.change);
   if (!memory.increment.reduced.ok) memory.change.reduced.ok = false;
-  if (memory.change.reduced.ok) scale_difference(memory.change, memory.increment, 1.0 / e);
+  if (!memory.change.reduced.ok) return;
+  scale_difference(memory.change, memory.increment, 1.0 / e);
+  Eigen::VectorXd& dlambda = memory.change.reduced.dlambda;
+  for (const RedundantRows& own : memory.here.reduced().redundant)
+    own.make_smallest(Eigen::VectorXd::Zero(dlambda.size()), dlambda);
 }
 
 StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules, Iterate& iterate) {
@@ -132,6 +136,10 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     finish(context, iterate.state, here);
     memory.passage = look_again(context, iterate.state, here.contacts(), memory.alarm);
     report.contact = here.contact_report();
+    if (memory.passage.overlap > report.contact.penetration) {
+      report.contact.penetration = memory.passage.overlap;
+      report.contact.deepest_pair = memory.passage.overlapping;
+    }
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     if (rules.fixed) contradicts(std::max(0.5 * report.violation, 1e-4 * context.model.size));
@@ -234,13 +242,14 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       --report.newton;  // the same iteration once more, with the compliance of these rows
       continue;
     }
-    for (const RedundantRows& own : here.reduced().redundant)
-      own.make_smallest(iterate.state.lambda, increment.reduced.dlambda);
     report.redundant |= increment.reduced.redundant;
     if (here.stalled()) return fail(Status::singular, std::string("solids") + single);
     if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
+    // (Of both before anything is made smallest: a difference of multipliers that nothing answers means nothing.)
+    if (rules.across) change_along(at, memory, iterate, report.times);
+    for (const RedundantRows& own : here.reduced().redundant)
+      own.make_smallest(iterate.state.lambda, increment.reduced.dlambda);
     if (rules.across) {
-      change_along(at, memory, iterate, report.times);
       const Increment& change = memory.change;
       if (!change.reduced.ok) return fail(Status::singular, "constraint rows and rods");
       const Eigen::VectorXd& n = rules.across->direction;

@@ -32,6 +32,7 @@ struct NewtonRules {
   Linearization::Wanted wanted = Linearization::Wanted::descent;
   const AcrossPath* across = nullptr;        ///< t is looked for, too
   Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
+  bool compared = false;                     ///< with a converged step, where they leave much
   Inverse* inverse = nullptr;                ///< commands are looked for, too: it has begun
 };
 

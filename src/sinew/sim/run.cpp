@@ -113,7 +113,7 @@ RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* f
   Workspace workspace = make_workspace(model, threads);
   const long steps = grid_steps(model.scene);
   while (state.grid < steps) {
-    const StepReport report = advance(model, workspace, state);
+    const StepReport report = advance(model, workspace, state, {.compared = true});
     if (!accepted(report.status)) {
       if (failure) *failure = report;
       return RunEnd::stopped;

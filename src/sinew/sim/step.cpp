@@ -1,7 +1,9 @@
 #include "sinew/sim/step.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "sinew/sim/assessment.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/motors.hpp"
@@ -82,6 +84,53 @@ class Lent {
 
 }  // namespace
 
+namespace {
+
+/// How far nodes, mass points of rods and rigid bodies are apart at most [m] in two states, and how far those of the
+/// first have come since the run began.
+struct Apart {
+  double states = 0.0, way = 0.0;
+};
+Apart apart(const Model& model, const State& state, const State& other) {
+  Apart most;
+  const auto take = [](double& most_of, const auto& a, const auto& b) {
+    if (a.cols() > 0) most_of = std::max(most_of, (a - b).colwise().norm().maxCoeff());
+  };
+  for (std::size_t i = 0; i < state.solids.size(); ++i) {
+    take(most.states, state.solids[i].x, other.solids[i].x);
+    take(most.way, state.solids[i].x, model.solids[i].body.rest);
+  }
+  for (std::size_t i = 0; i < state.rods.size(); ++i) {
+    take(most.states, state.rods[i].masses, other.rods[i].masses);
+    take(most.way, state.rods[i].masses, model.start_masses[i]);
+  }
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    take(most.states, state.bodies[i].p, other.bodies[i].p);
+    take(most.way, state.bodies[i].p, model.bodies[i].start.p);
+  }
+  return most;
+}
+
+/// Makes the step of Memory::context, which Memory::iterate has made by linearisations, once more until it converges,
+/// with the same commands: how far that ends beside it (`StepReport::off`); 0 where it does not end.
+double off_converged(Memory& memory, NewtonRules rules) {
+  const Model& model = memory.context.model;
+  rules.limit = model.scene.newton.limit;
+  rules.fixed = false;
+  rules.inverse = nullptr;
+  Iterate linearised = memory.iterate;
+  begin_step(memory);
+  double off = 0.0;
+  if (accepted(newton([](double, StepContext&) {}, memory, rules, memory.iterate).status)) {
+    const Apart most = apart(model, memory.iterate.state, linearised.state);
+    if (most.states > 1e-9 * model.size) off = most.states / std::max(most.way, 1e-9 * model.size);
+  }
+  memory.iterate = std::move(linearised);
+  return off;
+}
+
+}  // namespace
+
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state) {
   StepReport report;
   {
@@ -97,6 +146,10 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
     // (Before the state moves: from then on nothing asks for memory.)
     if (rules.inverse && accepted(report.status))
       report.aim = rules.inverse->aim(memory.context.model, memory.iterate.state);
+    if (rules.fixed && rules.compared && accepted(report.status) && leaves_much(memory.context.model, report)) {
+      report.off = report.aim.off = off_converged(memory, rules);
+      warn_of_linearisation(memory.context.model, memory.iterate.state.time, report);
+    }
   }
   if (accepted(report.status)) std::swap(state, memory.iterate.state);
   return report;
@@ -107,6 +160,7 @@ NewtonRules step_rules(const Model& model, const Effort& effort) {
   const bool fixed = wanted.iterations > 0 && !effort.converged;
   NewtonRules rules{fixed ? wanted.iterations : wanted.limit, fixed};
   rules.evaluation = effort.evaluation;
+  rules.compared = effort.compared && effort.evaluation == Evaluation::full;
   return rules;
 }
 

@@ -100,6 +100,8 @@ struct Aim {
   /// more than a dozen contacts: none around it would have.
   bool certain = false;
   int apart = -1;  ///< effector whose two are to press and are not near each other
+  /// [-] by how much the linearisation that says so is off (`StepReport::off`); 0 where it is not known to be.
+  double off = 0.0;
 };
 
 /// What came of a step: how it ended, how well, and what it cost.
@@ -113,7 +115,11 @@ struct StepReport {
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
   bool redundant = false;  ///< constraint rows depended on each other
   bool at_floor = false;   ///< forces were balanced to their rounding, not to the tolerance (`convergence_of`)
-  bool judged = false;     ///< it was looked for what a user should be warned of (not with Evaluation::motion)
+  /// [-] of an accepted step of `newton: n` that left much: how far a converged step from the same start ends beside
+  /// it, as a part of the way that things have moved since the run began; 0 where nothing was left, or none was made
+  /// (Effort::compared).
+  double off = 0.0;
+  bool judged = false;            ///< it was looked for what a user should be warned of (not with Evaluation::motion)
   std::vector<Warning> warnings;  ///< of an accepted step
   std::string detail;             ///< names what failed, for people
   ContactReport contact;
@@ -152,6 +158,7 @@ enum class Evaluation {
 struct Effort {
   Evaluation evaluation = Evaluation::full;
   bool converged = false;  ///< until the tolerance is met, whatever the scene's `newton` says
+  bool compared = false;   ///< where a step of `newton: n` leaves much, a converged one tells how far it is off
 };
 
 /// Advances a state by h [s]. On failure it stays as it is; while the step runs nobody may read it, as it stands

@@ -58,11 +58,19 @@ struct Wrench {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
 };
 
-/// Work of the mean of two wrenches as a frame carries their point from p.
-double work_of(const Wrench& before, const Wrench& after, const Placement& carried, const Vec3& p) {
-  return 0.5 * (before.force + after.force).dot(apply(carried, p) - p) +
-         0.5 * (before.moment + after.moment).dot(lie::log(carried.R));
+/// Work of a wrench as a frame carries its point from p.
+double work_of(const Wrench& own, const Placement& carried, const Vec3& p) {
+  return own.force.dot(apply(carried, p) - p) + own.moment.dot(lie::log(carried.R));
 }
+
+/// The part of what a frame does at the start and at the end of a step that its work counts with. In motion that at the
+/// end acts over the whole step, as backward Euler has it: a frame that sets off within a step, or a plate that hits,
+/// gives m v^2, of which one half is kinetic energy and the other lost. From one equilibrium to the next it is the
+/// mean.
+struct Share {
+  double before = 0.0, after = 1.0;
+};
+Share share_of(const StepContext& context) { return context.rate > 0.0 ? Share{0.0, 1.0} : Share{0.5, 0.5}; }
 
 /// What a frame does to the world over the step.
 Placement carried_by(const StepContext& context, int frame) {
@@ -90,7 +98,12 @@ Wrench held_by_attachment(const TieModel& tie, const rod::Mat3& axes, const Eige
 double work_of_frames(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
   const Model& model = context.model;
   const auto moves = [&model](int frame) { return frame >= 0 && model.scene.frames[frame].second.motion.has_value(); };
+  const Share share = share_of(context);
   double sum = 0.0;
+  const auto add = [&](const Wrench& before, const Wrench& after, int frame, const Vec3& p) {
+    const Placement carried = carried_by(context, frame);
+    sum += share.before * work_of(before, carried, p) + share.after * work_of(after, carried, p);
+  };
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     if (!moves(model.rods[i].frame)) continue;
     const auto number = static_cast<int>(i);
@@ -98,8 +111,7 @@ double work_of_frames(const StepContext& context, const State& next, const std::
     const RodState &from = context.start.rods[i], &to = next.rods[i];
     const auto before = rod::configure(rod, {rod_base(model, context.start, number), from.turned}, from.q);
     const auto after = rod::configure(rod, base_of(context, next, number), to.q);
-    sum += work_of(held_by_base(before, from), held_by_base(after, to), carried_by(context, model.rods[i].frame),
-                   rod::position(before, 0.0));
+    add(held_by_base(before, from), held_by_base(after, to), model.rods[i].frame, rod::position(before, 0.0));
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i) {
     const GeometricCableModel& cable = model.cables[i];
@@ -110,29 +122,29 @@ double work_of_frames(const StepContext& context, const State& next, const std::
       return Wrench{-state.lambda[cable.length_row] * (z.segment<3>(1) - start).normalized(), Vec3::Zero()};
     };
     const Placement before = cable_base(model, context.start, static_cast<int>(i));
-    sum += work_of(held(context.start, before), held(next, context.cable_bases[i]), carried_by(context, cable.frame),
-                   before.p);
+    add(held(context.start, before), held(next, context.cable_bases[i]), cable.frame, before.p);
   }
   for (const TieModel& tie : model.ties) {
     if (tie.body() || !moves(tie.frame)) continue;
     const Placement before = compose(moved(model, context.start, tie.frame), tie.holder),
                     after = compose(context.moved(tie.frame), tie.holder);
-    sum += work_of(held_by_attachment(tie, before.R, context.start.lambda),
-                   held_by_attachment(tie, after.R, next.lambda), carried_by(context, tie.frame), before.p);
+    add(held_by_attachment(tie, before.R, context.start.lambda), held_by_attachment(tie, after.R, next.lambda),
+        tie.frame, before.p);
   }
-  // What an obstacle presses with, where it presses: half at the start of the step, half at its end.
-  const auto pressed = [&](const ContactState& contact, const Vec3& force, const Vec3& point) {
+  // What an obstacle presses with, where it presses.
+  const auto pressed = [&](const ContactState& contact, const Vec3& force, const Vec3& point, double part) {
     const PairModel& pair = model.pairs[contact.pair];
     for (const Collider& own : {pair.a, pair.b}) {
       if (own.kind != Collider::Kind::obstacle || !moves(model.obstacles[own.number].frame)) continue;
       const bool is_a = own == (contact.on_second ? pair.b : pair.a);
       const Wrench by_it{is_a ? Vec3(-force) : force, Vec3::Zero()};
-      sum += work_of(by_it, {}, carried_by(context, model.obstacles[own.number].frame), point);
+      sum += part * work_of(by_it, carried_by(context, model.obstacles[own.number].frame), point);
     }
   };
-  for (const ContactState& own : context.start.contacts) pressed(own, own.force, own.point);
+  for (const ContactState& own : context.start.contacts) pressed(own, own.force, own.point, share.before);
   if (touches.size() == next.contacts.size()) {
-    for (std::size_t i = 0; i < touches.size(); ++i) pressed(next.contacts[i], touches[i].force, touches[i].point_b);
+    for (std::size_t i = 0; i < touches.size(); ++i)
+      pressed(next.contacts[i], touches[i].force, touches[i].point_b, share.after);
   }
   return sum;
 }
@@ -165,6 +177,31 @@ double work(const StepContext& context, const State& next, const std::vector<Tou
   for (const Grip& grip : context.command.grips) {
     const Vec3 from = context.start.solids[grip.solid].x.col(grip.node), to = next.solids[grip.solid].x.col(grip.node);
     sum += grip.stiffness * (grip.to - 0.5 * (from + to)).dot(to - from);
+  }
+  return sum;
+}
+
+double work_uncertainty(const StepContext& context, const State& next) {
+  const Model& model = context.model;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const double moved =
+        motor_position(model, next, model.actuators[i]) - motor_position(model, context.start, model.actuators[i]);
+    sum += 0.5 * std::abs(next.actuators[i] - context.start.actuators[i]) * std::abs(moved);
+  }
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    const double jump = context.command.loads[i] - context.start.loads[i];
+    if (jump == 0.0) continue;
+    sum += std::abs(
+        std::visit([&](const auto& load) { return work_of(load, context, next, 0.0, jump); }, model.loads[i].on));
+  }
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    Eigen::Index held = 0;
+    solid::each_held(model.solids[i].body, [&](int axis, int node) {
+      sum += 0.5 * std::abs(next.solids[i].reaction[held] - context.start.solids[i].reaction[held]) *
+             std::abs(next.solids[i].x(axis, node) - context.start.solids[i].x(axis, node));
+      ++held;
+    });
   }
   return sum;
 }
