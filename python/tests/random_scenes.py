@@ -666,7 +666,7 @@ def legal(random_: random.Random) -> tuple[Scene, Judge]:
                 if row["energy.dissipated"] > lost:
                     lost, unsure = row["energy.dissipated"], 0.0
                 more, work = row["energy.work"] - work, row["energy.work"]
-                unsure, before = unsure + 0.5 * abs(more - before), more
+                unsure, before = unsure + abs(more - before), more
                 gain = lost - row["energy.dissipated"] - unsure
                 if gain > 3e-3 * most and most > 1e-12 and "energy_gain" not in codes:
                     told.append(f"{lost - row['energy.dissipated']:.3g} J from nowhere of {most:.3g} J, without a word")

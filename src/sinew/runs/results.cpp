@@ -317,7 +317,7 @@ void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& st
       peak = step.signals[dissipated];
       unsure = 0.0;
     }
-    unsure += 0.5 * std::abs(more - before);
+    unsure += std::abs(more - before);
     done = step.signals[work];
     before = more;
     const double gain = peak - step.signals[dissipated] - unsure;

@@ -63,14 +63,11 @@ double work_of(const Wrench& own, const Placement& carried, const Vec3& p) {
   return own.force.dot(apply(carried, p) - p) + own.moment.dot(lie::log(carried.R));
 }
 
-/// The part of what a frame does at the start and at the end of a step that its work counts with. In motion that at the
-/// end acts over the whole step, as backward Euler has it: a frame that sets off within a step, or a plate that hits,
-/// gives m v^2, of which one half is kinetic energy and the other lost. From one equilibrium to the next it is the
-/// mean.
+/// Which parts of a force at the start and at the end of a step its work counts with: the mean of both, or half of what
+/// it changes by.
 struct Share {
-  double before = 0.0, after = 1.0;
+  double before = 0.5, after = 0.5;
 };
-Share share_of(const StepContext& context) { return context.rate > 0.0 ? Share{0.0, 1.0} : Share{0.5, 0.5}; }
 
 /// What a frame does to the world over the step.
 Placement carried_by(const StepContext& context, int frame) {
@@ -94,11 +91,11 @@ Wrench held_by_attachment(const TieModel& tie, const rod::Mat3& axes, const Eige
   return own;
 }
 
-/// Work of frames that move bases of rods and cables, attachments and obstacles.
-double work_of_frames(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
+/// Work of frames that move bases of rods and cables, attachments and obstacles. Without `touches` contacts are as the
+/// state has them.
+double work_of_frames(const StepContext& context, const State& next, const std::vector<Touch>& touches, Share share) {
   const Model& model = context.model;
   const auto moves = [&model](int frame) { return frame >= 0 && model.scene.frames[frame].second.motion.has_value(); };
-  const Share share = share_of(context);
   double sum = 0.0;
   const auto add = [&](const Wrench& before, const Wrench& after, int frame, const Vec3& p) {
     const Placement carried = carried_by(context, frame);
@@ -142,9 +139,10 @@ double work_of_frames(const StepContext& context, const State& next, const std::
     }
   };
   for (const ContactState& own : context.start.contacts) pressed(own, own.force, own.point, share.before);
-  if (touches.size() == next.contacts.size()) {
-    for (std::size_t i = 0; i < touches.size(); ++i)
-      pressed(next.contacts[i], touches[i].force, touches[i].point_b, share.after);
+  const bool at_iterate = touches.size() == next.contacts.size();
+  for (std::size_t i = 0; i < next.contacts.size(); ++i) {
+    const ContactState& own = next.contacts[i];
+    pressed(own, at_iterate ? touches[i].force : own.force, at_iterate ? touches[i].point_b : own.point, share.after);
   }
   return sum;
 }
@@ -172,7 +170,7 @@ double work(const StepContext& context, const State& next, const std::vector<Tou
   }
   if (std::any_of(model.scene.frames.begin(), model.scene.frames.end(),
                   [](const auto& frame) { return frame.second.motion.has_value(); }))
-    sum += work_of_frames(context, next, touches);
+    sum += work_of_frames(context, next, touches, {});
   for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
   for (const Grip& grip : context.command.grips) {
     const Vec3 from = context.start.solids[grip.solid].x.col(grip.node), to = next.solids[grip.solid].x.col(grip.node);
@@ -195,6 +193,7 @@ double work_uncertainty(const StepContext& context, const State& next) {
     sum += std::abs(
         std::visit([&](const auto& load) { return work_of(load, context, next, 0.0, jump); }, model.loads[i].on));
   }
+  sum += std::abs(work_of_frames(context, next, {}, {-0.5, 0.5}));
   for (std::size_t i = 0; i < model.solids.size(); ++i) {
     Eigen::Index held = 0;
     solid::each_held(model.solids[i].body, [&](int axis, int node) {

@@ -12,13 +12,11 @@ namespace sinew {
 ///
 ///     W = sum 1/2 (f_start + f_end) . (x_end - x_start),      of turns 1/2 (m_start + m_end) . log(R_end R_start^T).
 ///
-/// Frames in motion count with their force at the end of the step, which acts all over it in backward Euler.
-///
 /// `touches` are the contacts of the end. With it `energy_balance` is whole: what is missing has been dissipated.
 double work(const StepContext& context, const State& next, const std::vector<Touch>& touches);
 
-/// [J] By how much the work of actuators, loads and supports that counts with the mean may be beside that of a force
-/// that jumps within the step: the sum of 1/2 |f_end - f_start| |x_end - x_start|.
+/// [J] By how much the work of actuators, loads, supports and frames that counts with the mean may be beside that of a
+/// force that jumps within the step: the sum of 1/2 |f_end - f_start| |x_end - x_start|.
 double work_uncertainty(const StepContext& context, const State& next);
 
 }  // namespace sinew
