@@ -25,7 +25,7 @@ def test_random_scenes_end_right_or_say_why(kind: str, program: str) -> None:
 
 def test_the_judge_sees_a_rod_that_passes_a_peg() -> None:
     names = ["p0", "p1"]
-    judge = random_scenes.judge_rod_peg(names, ((0.5, 0.0, -1.0), (0.5, 0.0, 1.0)), lambda t: (0.0, 0.0, 0.0), 0.1, 0.0)
+    judge = random_scenes.judge_rod_peg(names, ((0.4, 0.0, -1.0), (0.4, 0.0, 1.0)), lambda t: (0.0, 0.0, 0.0), 0.1, 0.0)
 
     def row(time: float, y: float) -> dict[str, float]:
         return {"time": time, "p0.x": 0.0, "p0.y": y, "p0.z": 0.0, "p1.x": 1.0, "p1.y": y, "p1.z": 0.0}
