@@ -6,6 +6,20 @@
 namespace sinew {
 namespace {
 
+// Boxes side by side that overlap by half a millimetre when the run begins: what moves them apart adds energy, and the
+// step is not refused for it.
+TEST(ContactProblems, OverlapsAtTheStartAreMovedApartInWholeSteps) {
+  Scene scene = test::pile(2, 1, 1, 0.5);
+  scene.bodies[1].second.pose.translate = scene.bodies[0].second.pose.translate + Vec3(39.5 * test::mm, 0, 0);
+  const Model model = build(scene, test::slab_or_cube);
+  Workspace workspace(model);
+  State state = initial_state(model);
+  const StepReport report = advance(model, workspace, state);
+  ASSERT_EQ(report.status, Status::converged) << report.detail;
+  EXPECT_EQ(report.halvings, 0);
+  EXPECT_GT(state.bodies[1].p.x() - state.bodies[0].p.x(), 39.9 * test::mm);
+}
+
 TEST(ContactProblems, AreSolvedAndNoneWorseThanBySweeps_slow) {
   const std::vector<test::ContactProblem> all = test::contact_problems();
   EXPECT_GE(all.size(), 200U);

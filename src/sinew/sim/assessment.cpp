@@ -273,15 +273,17 @@ Loose loose_energy(const Model& model, const State& state) {
 
 }  // namespace
 
+bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& room) {
+  for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
+    if (model.pairs[iterate.contacts[i].pair].depth > 0.0 && room.gaps[i] < -1e-9 * model.size) return true;
+  }
+  return false;
+}
+
 std::string contact_adds_energy(const StepContext& context, const State& next) {
   constexpr double kGain = 1e-3;
   const Model& model = context.model;
   if (context.rate == 0.0 || next.contacts.empty()) return {};
-  // What overlaps at the start of a run is lifted apart as long as it does.
-  if (std::any_of(next.contacts.begin(), next.contacts.end(), [&model](const ContactState& own) {
-        return model.pairs[own.pair].depth > 0.0 && own.gap < -1e-9 * model.size;
-      }))
-    return {};
   // Most steps are done with here: nothing that is loose has become faster than by falling.
   const Loose before = loose_energy(model, context.start), after = loose_energy(model, next);
   if (after.kinetic <= before.kinetic + std::max(0.0, before.weight - after.weight)) return {};

@@ -140,10 +140,11 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       report.contact.penetration = memory.passage.overlap;
       report.contact.deepest_pair = memory.passage.overlapping;
     }
+    const bool lifts = lifts_apart(context.model, iterate.state, here.contacts());
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     if (rules.fixed) contradicts(std::max(0.5 * report.violation, 1e-4 * context.model.size));
-    if (!context.model.pairs.empty() && accepted(report.status)) {
+    if (!context.model.pairs.empty() && !lifts && accepted(report.status)) {
       if (std::string gained = contact_adds_energy(context, iterate.state); !gained.empty()) {
         report.status = Status::max_iterations;
         report.detail = std::move(gained);
