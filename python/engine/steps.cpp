@@ -242,6 +242,7 @@ void bind_steps(nb::module_& module) {
       .def_ro("violation", &FullReport::violation, doc::StepReport_violation)
       .def_ro("rotated", &FullReport::rotated, doc::StepReport_rotated)
       .def_ro("unstable", &FullReport::unstable, doc::StepReport_unstable)
+      .def_ro("stability_known", &FullReport::stability_known, doc::StepReport_stability_known)
       .def_ro("redundant", &FullReport::redundant, doc::StepReport_redundant)
       .def_ro("at_floor", &FullReport::at_floor, doc::StepReport_at_floor)
       .def_ro("judged", &FullReport::judged, doc::StepReport_judged)

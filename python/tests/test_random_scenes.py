@@ -1,4 +1,4 @@
-"""A short run of the random scenes; `random_scenes.py` makes as many as one likes."""
+"""A short run of the random scenes; `python -m random_scenes` makes as many as one likes."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import random_scenes
 NUMBERS = {
     "throws": [*range(30), 52],
     "frames": list(range(10)),
-    "verdicts": list(range(10)),
     "scenes": list(range(30)),
+    "faults": list(range(len(random_scenes.FAULTS))),
 }
 
 

@@ -136,9 +136,14 @@ class Meet {
     }
   }
 
-  void polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, const Pose& there);
+  /// Two of Convex.
+  void polyhedra(const Shape& first, const Pose& at, const Shape& second, const Pose& there);
 
  private:
+  /// Adds the corners of both that are as near to the other one as any, but for `some` [m], and nearer than `least`,
+  /// with the parts that they are near to.
+  void nearest_corners(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double some,
+                       double least);
   /// The axis of a capsule, in the polyhedron's axes, against its edges and corners. While it is outside, an edge meets
   /// it where the line between their nearest points leaves the edge between its two faces, so that no other part of the
   /// polyhedron is nearer there; likewise a corner. `wanted` chooses edges.
@@ -300,7 +305,33 @@ void thin(std::vector<Vec3>& polygon, const Vec3& n) {
   polygon = std::move(kept);
 }
 
-void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, const Pose& there) {
+void Meet::nearest_corners(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double some,
+                           double least) {
+  std::vector<std::pair<double, Meeting>> near;
+  const auto look = [&](const Shape& a, const Pose& of_a, const Shape& b, const Pose& of_b, bool swapped) {
+    const std::vector<Vec3>& all = std::get<Convex>(a).surface.corners;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Vec3 p = into(of_b, of_a * all[i]);
+      const Simplex part = nearest_part(b, p);
+      const double gap = nearest(point_at(p, 0.0), part).gap;
+      if (swapped && part.kind == Simplex::Kind::point) continue;  // two corners meet once
+      if (gap >= std::min(least + some, alarm_)) continue;
+      least = std::min(least, gap);
+      near.push_back({gap, {point_at(all[i], 0.0), part, key(Kind::point, i, swapped ? 1 : 0), swapped}});
+    }
+  };
+  look(first, at, second, there, false);
+  look(second, there, first, at, true);
+  for (const auto& [gap, own] : near) {
+    if (gap <= least + some) found_.push_back(own);
+  }
+}
+
+// The largest separation s along normals of faces and across edges is how deep the two overlap, where s < 0. Where they
+// are apart it is their distance if a corner is over a face or two edges cross nearest, else less: a corner then is
+// nearest to a corner or an edge.
+void Meet::polyhedra(const Shape& first, const Pose& at, const Shape& second, const Pose& there) {
+  const Polyhedron &P = std::get<Convex>(first).surface, &Q = std::get<Convex>(second).surface;
   const Pose Q_to_P{at.R.transpose() * there.R, into(at, there.p)};
   const Pose P_to_Q{Q_to_P.R.transpose(), into(there, at.p)};
   std::vector<Vec3> Q_in_P, P_in_Q;
@@ -319,11 +350,10 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
   const auto add_edges = [&] {
     found_.push_back({edge_of(Q, edges.of_Q), edge_of(P, edges.of_P), key(Kind::edges, edges.of_P, edges.of_Q), true});
   };
-  // Two edges that overlap meet between their ends; where they do not, they are not what is nearest.
-  const bool edges_meet =
-      std::isfinite(edges.separation) &&
-      (edges.separation > 0.0 || nearest(moved(there, edge_of(Q, edges.of_Q)), moved(at, edge_of(P, edges.of_P))).gap <
-                                     edges.separation + 1e-9 * size);
+  // Two edges meet between their ends; where they do not, they are not what is nearest.
+  const bool edges_meet = std::isfinite(edges.separation) &&
+                          nearest(moved(there, edge_of(Q, edges.of_Q)), moved(at, edge_of(P, edges.of_P))).gap <
+                              edges.separation + 1e-9 * size;
   if (edges_meet && edges.separation > std::max(of_P.separation, of_Q.separation) + clearly) return add_edges();
   const bool on_Q = of_Q.separation > of_P.separation + clearly;
   const Polyhedron &reference = on_Q ? Q : P, &incident = on_Q ? P : Q;
@@ -344,7 +374,18 @@ void Meet::polyhedra(const Polyhedron& P, const Pose& at, const Polyhedron& Q, c
     clip(polygon, from, (to - from).cross(n));
   }
   std::erase_if(polygon, [&](const Vec3& p) { return n.dot(p - x) >= alarm_; });
-  const bool overlap = std::max({of_P.separation, of_Q.separation, edges.separation}) <= 0.0;
+  const double separation = std::max({of_P.separation, of_Q.separation, edges.separation});
+  const bool overlap = separation <= 0.0, apart = separation > 1e-7 * size;
+  double least = INFINITY;
+  for (const Vec3& p : polygon) least = std::min(least, n.dot(p - x));
+  if (apart && least > separation + 1e-9 * size) {  // something beside the face is nearer
+    if (edges_meet && edges.separation > separation - 1e-9 * size) {
+      add_edges();
+    } else {
+      nearest_corners(first, at, second, there, clearly, least);
+    }
+    if (polygon.empty()) return;
+  }
   const bool above = std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& p) { return n.dot(p - x) > 0.0; });
   if (polygon.empty() || (overlap && above)) {  // beside the face: two edges, or else the corner that is deepest
     if (edges_meet) return add_edges();
@@ -386,11 +427,13 @@ void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& t
     }
     return meeting.points(points, of_body, space, of_space, swapped);
   }
-  const auto polyhedron = [](const Shape& shape) {
-    if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) return prism(*cylinder);
-    return std::get<Convex>(shape).surface;
+  std::array<Shape, 2> prisms;
+  const auto flat = [](const Shape& shape, Shape& room) -> const Shape& {
+    const Cylinder* const cylinder = std::get_if<Cylinder>(&shape);
+    if (!cylinder) return shape;
+    return room = Convex{prism(*cylinder)};
   };
-  meeting.polyhedra(polyhedron(first), at, polyhedron(second), there);
+  meeting.polyhedra(flat(first, prisms[0]), at, flat(second, prisms[1]), there);
 }
 
 }  // namespace sinew::contact

@@ -31,7 +31,8 @@ Mesh make_mesh(Eigen::Matrix3Xd points, std::vector<std::array<int, 3>> triangle
     for (std::size_t i = 0; i < 3; ++i) {
       const int from = triangle[i], to = triangle[(i + 1) % 3], third = triangle[(i + 2) % 3];
       const std::array<int, 2> ends{std::min(from, to), std::max(from, to)};
-      const Edge own{Ridge{ends, {third, third}}, static_cast<int>(number), i};
+      // (As the first triangle runs round it, so that its outside is known.)
+      const Edge own{Ridge{{from, to}, {third, third}}, static_cast<int>(number), i};
       const auto [entry, fresh] = ridges.try_emplace(ends, own);
       if (fresh) continue;
       Edge& other = entry->second;

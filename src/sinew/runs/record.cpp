@@ -155,6 +155,7 @@ void add(const StepReport& report, RunSummary& summary) {
   summary.halved += report.halvings > 0 ? 1 : 0;
   add(report.contact, summary.contact);
   summary.floors += report.at_floor ? 1 : 0;
+  ++(!report.stability_known ? summary.not_known : report.unstable ? summary.unstable : summary.stable);
   if (const Warning* inverted = find_warning(report.warnings, "elements_inverted"))
     summary.most_inverted = std::max(summary.most_inverted, static_cast<int>(inverted->value));
 }

@@ -180,6 +180,10 @@ void write_report(const std::filesystem::path& path, const LoadedScene& loaded, 
     report["summary"]["steps_with_repeated_rows"] = summary.redundant;
     report["summary"]["parts_of_halved_steps"] = summary.halved;
     report["summary"]["steps_balanced_to_rounding"] = summary.floors;
+    const Analysis analysis = loaded.model.scene.analysis;
+    if (analysis == Analysis::quasi_static || analysis == Analysis::statics)
+      report["summary"]["equilibria"] = {
+          {"stable", summary.stable}, {"unstable", summary.unstable}, {"not_known", summary.not_known}};
     if (!loaded.model.pairs.empty() || !loaded.model.rubbing.empty())
       report["summary"]["contact"] = contact_json(summary.contact);
     report["time_per_step"]["threads"] = summary.threads;

@@ -20,10 +20,11 @@ struct RunSummary {
   int rotated = 0;                ///< of those, steps in which the rotated tangent stood in for the exact one
   int most_inverted = 0;          ///< of those, most elements flat or inside out in one
   int threads = 1;
-  int halved = 0;         ///< of those, parts of steps that were too long
-  int redundant = 0;      ///< of those, steps whose rows repeated each other
-  int floors = 0;         ///< of those, steps whose forces were balanced to their rounding, not to the tolerance
-  ContactReport contact;  ///< of those, as `add` puts them together
+  int halved = 0;     ///< of those, parts of steps that were too long
+  int redundant = 0;  ///< of those, steps whose rows repeated each other
+  int floors = 0;     ///< of those, steps whose forces were balanced to their rounding, not to the tolerance
+  int stable = 0, unstable = 0, not_known = 0;  ///< of analyses at rest: equilibria told as these
+  ContactReport contact;                        ///< of those, as `add` puts them together
 };
 
 /// Sums of what was done, the largest of all else.

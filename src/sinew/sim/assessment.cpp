@@ -116,12 +116,17 @@ void assess_couplings(const Model& model, const State& state, Warnings& warnings
 void assess_contacts(const Model& model, bool fixed, const StepReport& step, Warnings& warnings) {
   const ContactReport& contact = step.contact;
   const double limit = (fixed ? 1e-4 : 1e-6) * model.size;
+  const auto bends = [&model](int pair) {
+    return model.pairs[pair].a.kind == Collider::Kind::rod || model.pairs[pair].b.kind == Collider::Kind::rod;
+  };
   if (contact.deepest_pair >= 0 && contact.penetration > limit) {
     warnings.add({.code = "penetration",
                   .where = "contact",
                   .message = name_of_pair(model, contact.deepest_pair) + " overlap by " +
                              number(1e3 * contact.penetration) + " mm",
-                  .remedy = "take shorter steps" + std::string(fixed ? ", or leave `newton` out" : ""),
+                  .remedy = "take shorter steps" +
+                            std::string(bends(contact.deepest_pair) ? ", give the rod more sections" : "") +
+                            (fixed ? ", or leave `newton` out" : ""),
                   .value = contact.penetration,
                   .limit = limit,
                   .unit = "m"});
@@ -249,9 +254,9 @@ std::string beyond_bearing(const Model& model, const State& state) {
 
 namespace {
 
-/// Kinetic energy of rods and rigid bodies, which contacts move at once, and the potential of their weight.
+/// Energies of rods and rigid bodies, which contacts move at once.
 struct Loose {
-  double kinetic = 0.0, weight = 0.0;
+  double kinetic = 0.0, elastic = 0.0, weight = 0.0;
 };
 Loose loose_energy(const Model& model, const State& state) {
   Loose own;
@@ -261,7 +266,12 @@ Loose loose_energy(const Model& model, const State& state) {
     own.weight -= model.bodies[i].body.mass * g.dot(state.bodies[i].p);
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
-    const std::vector<rod::MassPoint>& masses = model.rods[i].rod.masses;
+    const rod::Rod& rod = model.rods[i].rod;
+    const std::vector<rod::MassPoint>& masses = rod.masses;
+    for (int k = 0; k < rod.count(); ++k) {
+      const auto q = rod.of_section(state.rods[i].q, k);
+      own.elastic += 0.5 * q.dot(rod.sections[static_cast<std::size_t>(k)].stiffness * q);
+    }
     for (std::size_t m = 0; m < masses.size(); ++m) {
       const auto column = static_cast<Eigen::Index>(m);
       own.kinetic += 0.5 * masses[m].mass * state.rods[i].velocity.col(column).squaredNorm();
@@ -284,9 +294,10 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   constexpr double kGain = 1e-3;
   const Model& model = context.model;
   if (context.rate == 0.0 || next.contacts.empty()) return {};
-  // Most steps are done with here: nothing that is loose has become faster than by falling.
+  // Most steps are done with here: nothing that is loose has become faster, but by falling.
   const Loose before = loose_energy(model, context.start), after = loose_energy(model, next);
-  if (after.kinetic <= before.kinetic + std::max(0.0, before.weight - after.weight)) return {};
+  const double faster = after.kinetic - before.kinetic - std::max(0.0, before.weight - after.weight);
+  if (faster <= kGain * std::max(before.kinetic + before.elastic, after.kinetic + after.elastic)) return {};
   const EnergyBalance from = energy_balance(model, context.start), to = energy_balance(model, next);
   const double gain = to.total() - from.total() - (next.energies.work - context.start.energies.work);
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);

@@ -17,6 +17,8 @@ using contact::Simplex;
 
 /// Part of the thinner of two by which they may overlap.
 constexpr double kDeepest = 0.25;
+/// And by which a rod may lie in what it touches between the places where it does, unsaid.
+constexpr double kDeepestBetween = 0.1;
 
 /// Both ends of a step.
 struct StepMotion {
@@ -68,6 +70,31 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
   for (const contact::Meeting& own : meetings) {
     const contact::Pose &of_a = own.swapped ? b : a, &of_b = own.swapped ? a : b;
     deepest = std::max(deepest, -contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b)).gap);
+  }
+  return deepest;
+}
+
+/// How deep the curve of a rod lies in a rigid shape between the points and pieces by which it touches: a rod that
+/// folds within one section may. 0 for other pairs.
+double deepest_between(const Moment& now, const PairModel& pair) {
+  const bool first = pair.a.kind == Kind::rod;
+  const Collider &bent = first ? pair.a : pair.b, &hard = first ? pair.b : pair.a;
+  const Model& model = now.model;
+  if (bent.kind != Kind::rod || !is_rigid(hard) || mesh_of(model, hard)) return 0.0;
+  constexpr int kPlacesOfPiece = 4;
+  const RodModel& rod = model.rods[bent.number];
+  const contact::Pose pose = now.pose(hard);
+  const Vec3 reach = contact::reach(shape_of(model, hard), Eigen::Matrix3d::Identity());
+  double deepest = 0.0;
+  for (std::size_t i = 0; i + 1 < rod.touching.size(); ++i) {
+    for (int k = 1; k < kPlacesOfPiece; ++k) {
+      const double s = std::lerp(rod.touching[i], rod.touching[i + 1], static_cast<double>(k) / kPlacesOfPiece);
+      const Vec3 local = pose.R.transpose() * (rod::position(now.rods[bent.number], s) - pose.p);
+      const double radius = rod::radius_at(rod.rod.profile, s);
+      if ((local.cwiseAbs() - reach).maxCoeff() >= radius) continue;
+      const Simplex part = contact::nearest_part(shape_of(model, hard), local);
+      deepest = std::max(deepest, -contact::nearest(contact::point_at(local, radius), part).gap);
+    }
   }
   return deepest;
 }
@@ -129,7 +156,8 @@ double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double
 
 }  // namespace
 
-Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, double alarm) {
+Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, bool evaluated,
+                   double alarm) {
   Passage found;
   const Model& model = context.model;
   if (model.pairs.empty()) return found;
@@ -143,8 +171,10 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
       found.depth = depth;
     }
   }
-  std::vector<rod::Configuration> rods;
-  configure_touching(model, context.bases, next, rods);
+  std::vector<rod::Configuration> configured;
+  const bool there = evaluated && !next.contacts.empty();  // (without contacts nothing is evaluated)
+  if (!there) configure_touching(model, context.bases, next, configured);
+  const std::vector<rod::Configuration>& rods = there ? room.now : configured;
   const std::vector<Placement> frames = frames_at(model, context.start.time);
   const Moment start{model, context.start, frames, room.start};
   const Moment end{model, next, context.displacement, rods};
@@ -161,6 +191,19 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const double speed = motion_of(pair.a) + motion_of(pair.b);
     found.alarm = std::max(found.alarm, speed);
     const double thin = room.thin[i];
+    const auto of_pair = [i](const ContactState& own) { return own.pair == static_cast<int>(i); };
+    if (std::any_of(next.contacts.begin(), next.contacts.end(), of_pair)) {
+      const double between = deepest_between(end, pair) - pair.depth;
+      if (between > std::max(kDeepestBetween * thin, found.overlap)) {
+        found.overlap = between;
+        found.overlapping = static_cast<int>(i);
+      }
+      if (between > std::max(kDeepest * thin, found.depth)) {
+        found.kind = Passage::Kind::passed;
+        found.pair = static_cast<int>(i);
+        found.depth = between;
+      }
+    }
     const bool shapes = are_shapes(model, pair);
     const bool known = shapes && std::any_of(room.found.begin(), room.found.end(),
                                              [i](const auto& part) { return part.first == static_cast<int>(i); });

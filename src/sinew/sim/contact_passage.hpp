@@ -9,7 +9,8 @@
 //     t <- t + gap(t) / (how far the two move towards each other at most).
 //
 // A pair that meets and was no candidate makes the step be done again with a longer alarm distance; one that was a
-// candidate and still comes deeper than a quarter of the thinner of the two makes it be refused.
+// candidate and still comes deeper than a quarter of the thinner of the two makes it be refused. So does a rod whose
+// curve lies that deep in a rigid shape between the places where it touches: it folds within a section.
 #pragma once
 
 #include "sinew/sim/contacts.hpp"
@@ -22,13 +23,15 @@ struct Passage {
   Kind kind = Kind::none;
   int pair = -1;         ///< of the model's, the deepest
   double depth = 0.0;    ///< [m] of its overlap on the way
-  double overlap = 0.0;  ///< [m] in which two rigid shapes end that were found to touch, whatever parts of them
+  double overlap = 0.0;  ///< [m] in which two end that touch, whatever parts of them: rigid shapes, rods in these
   int overlapping = -1;  ///< of the model's pairs, the one with that
   double alarm = 0.0;    ///< [m] within which contacts are to be looked for to find all that may meet
 };
 
-/// Looks along the motion from the start of a step to `next`. `alarm` is that within which `room` was filled. Costs
-/// little where nothing moved by more than that, or by the thickness of what may meet.
-Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, double alarm);
+/// Looks along the motion from the start of a step to `next`, at which `room` is `evaluated`, or not yet. `alarm` is
+/// that within which it was filled. Costs little where nothing moved by more than that, or by the thickness of what may
+/// meet.
+Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, bool evaluated,
+                   double alarm);
 
 }  // namespace sinew

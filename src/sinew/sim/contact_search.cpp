@@ -12,71 +12,6 @@ using contact::Simplex;
 
 namespace {
 
-void fit_boxes(Surface& own) {
-  const contact::Mesh& mesh = *own.mesh;
-  const Eigen::Matrix3Xd& x = own.x;
-  contact::find_outward(mesh, x, own.outward);
-  own.boxes.clear();
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    contact::Box& box = own.boxes.emplace_back();
-    for (const int point : t) box.extend(Vec3(x.col(point)));
-  }
-  own.faces.fit(own.boxes);
-  own.boxes.clear();
-  for (const contact::Ridge& ridge : mesh.ridges) {
-    contact::Box& box = own.boxes.emplace_back();
-    for (const int point : ridge.ends) box.extend(Vec3(x.col(point)));
-  }
-  own.edges.fit(own.boxes);
-}
-
-}  // namespace
-
-void Surfaces::fit(const Collider& own, const Moment& now) {
-  std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
-  if (static_cast<int>(all.size()) <= own.number) all.resize(static_cast<std::size_t>(own.number) + 1);
-  Surface& surface = all[static_cast<std::size_t>(own.number)];
-  if (!surface.mesh) {
-    const auto mesh = mesh_of(now.model, own);
-    if (!mesh) return;
-    surface.faces = mesh->faces;
-    surface.edges = mesh->edges;
-    surface.mesh = mesh;  // last, as the pose below: memory may run out
-  }
-  if (!is_rigid(own)) {
-    surface.x = now.state.solids[own.number].x;
-    fit_boxes(surface);
-    return;
-  }
-  const contact::Pose pose = now.pose(own);
-  if (surface.pose && surface.pose->R == pose.R && surface.pose->p == pose.p) return;
-  surface.pose.reset();
-  surface.x = (pose.R * surface.mesh->points).colwise() + pose.p;
-  fit_boxes(surface);
-  surface.pose = pose;
-}
-
-void Surfaces::fit(const Moment& now) {
-  std::vector<Collider> fitted;
-  for (const PairModel& pair : now.model.pairs) {
-    for (const Collider& own : {pair.a, pair.b}) {
-      if (own.kind == Kind::rod || std::find(fitted.begin(), fitted.end(), own) != fitted.end()) continue;
-      fitted.push_back(own);
-      fit(own, now);
-    }
-  }
-}
-
-const Surface* Surfaces::of(const Collider& own) const {
-  if (own.kind == Kind::rod) return nullptr;
-  const std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
-  if (static_cast<int>(all.size()) <= own.number) return nullptr;
-  const Surface& surface = all[static_cast<std::size_t>(own.number)];
-  return surface.mesh ? &surface : nullptr;
-}
-
-namespace {
-
 class Search {
  public:
   Search(const Moment& start, double alarm, double depth, const Surfaces& surfaces, std::vector<ContactState>& found)
@@ -85,6 +20,7 @@ class Search {
   void pair(int number) {
     pair_ = number;
     const PairModel& own = start_.model.pairs[number];
+    shallow_ = depth_;
     depth_ = std::max(depth_, own.depth);
     if (are_shapes(start_.model, own)) {
       each_meeting(own, alarm_,
@@ -93,13 +29,24 @@ class Search {
     }
     points_and_faces(own.a, own.b, Part::point_of_first);
     if (own.a != own.b) points_and_faces(own.b, own.a, Part::point_of_second);
-    edges(own.a, own.b);
+    const auto bent = [this](const ContactSide& side, double thick) {
+      return whole_pieces && rod_piece(side) ? thick : 0.0;
+    };
+    const auto on_piece = [&](const ContactSide& a, const Edge& b, const contact::Nearest& found, std::uint64_t part) {
+      if (matters(found.gap, std::max(depth_, bent(b.side, a.local.radius + b.placed.radius)))) add(a, b.side, part);
+    };
+    each_point_on_piece(own.a, own.b, on_piece);
+    each_point_on_piece(own.b, own.a, on_piece);
+    each_crossing(own.a, own.b, [&](const Edge& a, const Edge& b, const contact::Nearest& found, std::uint64_t part) {
+      const double thick = a.placed.radius + b.placed.radius, deep = std::max(bent(a.side, thick), bent(b.side, thick));
+      if (matters(found.gap, std::max(depth_, deep)) && crosses_inside(a, b, found)) add(a.side, b.side, part);
+    });
   }
 
   /// Whether pieces of rods count however deep their chords lie in what they bend round.
   bool whole_pieces = false;
 
-  /// How deep points of one are in the other.
+  /// How deep points of one are in the other or, where none are, edges beside or through it.
   double overlap(int number) {
     const PairModel& own = start_.model.pairs[number];
     if (own.a == own.b) return 0.0;
@@ -118,7 +65,17 @@ class Search {
     };
     look(own.a, own.b);
     look(own.b, own.a);
-    return deepest;
+    if (deepest > 0.0) return deepest;
+    const auto on_piece = [&](const ContactSide&, const Edge&, const contact::Nearest& found, std::uint64_t) {
+      deepest = std::max(deepest, -found.gap);
+    };
+    each_point_on_piece(own.a, own.b, on_piece);
+    each_point_on_piece(own.b, own.a, on_piece);
+    each_crossing(own.a, own.b, [&](const Edge& a, const Edge& b, const contact::Nearest& found, std::uint64_t) {
+      if (found.gap < 0.0 && crosses_inside(a, b, found)) deepest = std::max(deepest, -found.gap);
+    });
+    if (deepest > 0.0) return deepest;
+    return std::max(depth_of_edges(own.a, own.b), depth_of_edges(own.b, own.a));
   }
 
  private:
@@ -145,8 +102,36 @@ class Search {
     return std::max(0.0, point.radius + (in ? least : -least));
   }
 
+  /// How deep edges, axes and pieces of one are in the middle between two triangles of the other, through which they
+  /// pass.
+  double depth_of_edges(const Collider& poking, const Collider& faced) const {
+    const Surface* surface = surfaces_.of(faced);
+    if (!surface) return 0.0;
+    double deepest = 0.0;
+    for (const Edge& edge : edges_of(poking, around(faced))) {
+      const Vec3 from = edge.placed.x[0], along = edge.placed.x[1] - from;
+      std::vector<double> passes;
+      surface->faces.each_near(edge.box, [&](int number) {
+        const std::array<int, 3>& t = surface->mesh->triangles[number];
+        const Vec3 x = surface->x.col(t[0]), d = surface->x.col(t[1]) - x, e = surface->x.col(t[2]) - x;
+        const Vec3 n = d.cross(e);
+        const double height = n.dot(x - from) / n.dot(along);
+        if (!(height >= 0.0 && height <= 1.0)) return;
+        const Vec3 at = from + height * along - x;
+        const double u = at.cross(e).dot(n) / n.squaredNorm(), v = d.cross(at).dot(n) / n.squaredNorm();
+        if (u >= 0.0 && v >= 0.0 && u + v <= 1.0) passes.push_back(height);
+      });
+      std::sort(passes.begin(), passes.end());
+      for (std::size_t i = 0; i + 1 < passes.size(); ++i) {
+        const Vec3 middle = from + 0.5 * (passes[i] + passes[i + 1]) * along;
+        deepest = std::max(deepest, depth_in(faced, contact::point_at(middle, edge.placed.radius)));
+      }
+    }
+    return deepest;
+  }
+
   /// By which a contact of a pair is known again: what it is, and the numbers of its two parts.
-  enum class Part : std::uint64_t { point_of_first, point_of_second, edges };
+  enum class Part : std::uint64_t { point_of_first, point_of_second, edges, point_on_piece };
   static std::uint64_t key(Part part, int i, int j) {
     constexpr int kBits = 25;  // in all what a double holds exactly
     return (static_cast<std::uint64_t>(part) << (2 * kBits)) | (static_cast<std::uint64_t>(i) << kBits) |
@@ -257,29 +242,14 @@ class Search {
 
   template <class Visit>
   void each_ridge(const Collider& own, const Surface& surface, const contact::Box& where, const Visit& visit) const {
-    const Eigen::Matrix3Xd& x = surface.x;
     surface.edges.each_near(where, [&](int number) {
       const contact::Ridge& ridge = surface.mesh->ridges[number];
-      const Vec3 outward =
-          (surface.outward.points.col(ridge.ends[0]) + surface.outward.points.col(ridge.ends[1])).normalized();
-      if (ridge.sides[0] != ridge.sides[1]) {
-        const Vec3 inward = 0.5 * (x.col(ridge.sides[0]) + x.col(ridge.sides[1])) - x.col(ridge.ends[0]);
-        if (is_flat(surface, ridge) || inward.dot(outward) > 0.0) return;  // flat or a valley: points meet it
-      }
+      const std::optional<Vec3> outward = outward_of_ridge(surface, ridge);
+      if (!outward) return;
       ContactSide side = part_of(own, surface, Simplex::Kind::segment, {ridge.ends[0], ridge.ends[1], 0});
-      point_outward(side, outward);
+      point_outward(side, *outward);
       visit(side, number);
     });
-  }
-
-  /// Whether the two triangles beside a ridge lie in one plane, but for 10 degrees.
-  static bool is_flat(const Surface& surface, const contact::Ridge& ridge) {
-    const Eigen::Matrix3Xd& x = surface.x;
-    const auto normal = [&](int third) {
-      return (x.col(ridge.ends[1]) - x.col(ridge.ends[0])).cross(x.col(third) - x.col(ridge.ends[0])).normalized();
-    };
-    // One of the two is turned the other way.
-    return -normal(ridge.sides[0]).dot(normal(ridge.sides[1])) > kFlat;
   }
 
   /// Of all of an object, and the alarm distance around.
@@ -314,7 +284,7 @@ class Search {
   bool matters(double gap, double depth) const { return gap < alarm_ && gap > -depth; }
 
   void points_and_faces(const Collider& poking, const Collider& faced, Part part) {
-    if (faced.kind == Kind::rod) return;  // thin: edges meet it
+    if (faced.kind == Kind::rod) return;  // thin: its pieces are met
     each_prong(poking, Simplex::Kind::point, around(faced), [&](const ContactSide& a, int number) {
       const Simplex point = start_.placed(a);
       if (const Surface* surface = surfaces_.of(faced)) {
@@ -323,6 +293,45 @@ class Search {
         add_shape(a, point, faced, key(part, number, 0));
       }
     });
+  }
+
+  /// Visits the corners of an object, the middle of a ball and the ends of a capsule beside the pieces of a rod,
+  /// between whose ends they would pass otherwise.
+  template <class Visit>
+  void each_point_on_piece(const Collider& poking, const Collider& rod, const Visit& visit) {
+    if (rod.kind != Kind::rod || poking.kind == Kind::rod) return;
+    const std::vector<Edge> pieces = edges_of(rod, around(poking));
+    if (pieces.empty()) return;
+    each_prong(poking, Simplex::Kind::point, around(rod), [&](const ContactSide& a, int number) {
+      const Simplex point = start_.placed(a);
+      const contact::Box where = grown(contact::Box(point.x[0]), point.radius);
+      for (const Edge& piece : pieces) {
+        if (!where.intersects(piece.box)) continue;
+        const contact::Nearest found = contact::nearest(point, piece.placed);
+        if (!(found.gap < alarm_) || !(found.b[0] > kSame && found.b[1] > kSame)) continue;
+        if (found.normal.dot(outward_of(a)) > 0.0 || !out_of_corner(a, -found.normal)) continue;
+        visit(a, piece, found, key(Part::point_on_piece, number, piece.number));
+      }
+    });
+  }
+
+  /// Whether no edge of a surface that leaves one of its points does so towards `d`, so that the point is nearest to
+  /// what is there. True of points of shapes.
+  bool out_of_corner(const ContactSide& point, const Vec3& d) const {
+    const Surface* surface = surfaces_.of(point.on);
+    if (!surface) return true;
+    const int own = point.nodes[0];
+    const Vec3 x = surface->x.col(own);
+    bool out = true;
+    surface->faces.each_near(contact::Box(x), [&](int number) {
+      const std::array<int, 3>& corners = surface->mesh->triangles[number];
+      if (std::find(corners.begin(), corners.end(), own) == corners.end()) return;
+      for (const int other : corners) {
+        const Vec3 away = surface->x.col(other) - x;
+        out = out && d.dot(away) <= 1e-9 * away.norm();
+      }
+    });
+    return out;
   }
 
   /// Out of what a point is a corner of; zero of points of rods and of middles of what is round.
@@ -349,6 +358,7 @@ class Search {
     const Vec3 outward = outward_of(a);
     const bool itself = a.on == faced, thick = point.radius > 0.0;
     std::optional<ContactSide> nearest;
+    std::optional<bool> in;
     double least = INFINITY, against = INFINITY;
     bool in_front = false;
     const contact::Box where = grown(contact::Box(point.x[0]), point.radius);
@@ -369,6 +379,11 @@ class Search {
                                 ? corner || longest_edge(face) < 0.5 * point.radius
                                 : corner && faced.kind == Kind::solid;  // those of two rigid meshes may all be corners
       if ((is_rigid(a.on) && of_nodes) || !matters(found.gap)) return;
+      // Far behind the plane of one triangle of many is not yet inside.
+      if (!itself && found.gap + point.radius < -shallow_) {
+        if (!in) in = contact::inside(mesh, surface.x, surface.faces, point.x[0]);
+        if (!*in) return;
+      }
       const Vec3 n = (face.x[1] - face.x[0]).cross(face.x[2] - face.x[0]);
       if (thick && n.dot(point.x[0] - face.x[0]) > 0.0) {
         add(a, b, key(part, prong, number));
@@ -419,7 +434,10 @@ class Search {
     return all;
   }
 
-  void edges(const Collider& first, const Collider& second) {
+  /// Visits the edges of two objects, and the pieces of rods, that pass each other between their ends within the alarm
+  /// distance: the one that has an outside, if only one has, comes second.
+  template <class Visit>
+  void each_crossing(const Collider& first, const Collider& second, const Visit& visit) {
     const std::vector<Edge> all = edges_of(first, around(second));
     if (all.empty()) return;
     std::vector<Edge> others = first == second ? all : edges_of(second, around(first));
@@ -435,18 +453,29 @@ class Search {
       for (; other != others.end() && other->box.min().x() <= where.max().x(); ++other) {
         if (!where.intersects(other->box)) continue;
         if (first == second && (one.number >= other->number || neighbours(one.side, other->side))) continue;
-        // What has an outside comes second.
         const bool turned = other->placed.normal.isZero() && !one.placed.normal.isZero();
         const Edge &a = turned ? *other : one, &b = turned ? one : *other;
         if (side_by_side(a.placed, b.placed)) continue;
         const contact::Nearest found = contact::nearest(a.placed, b.placed);
-        const bool bends = whole_pieces && (rod_piece(a.side) || rod_piece(b.side));
-        const double thick = bends ? a.placed.radius + b.placed.radius : 0.0;
-        if (!matters(found.gap, std::max(depth_, thick)) || !within(found, a.side, b.side)) continue;
+        if (!(found.gap < alarm_) || !within(found, a.side, b.side)) continue;
         if (found.normal.dot(b.placed.normal) < 0.0 || found.normal.dot(a.placed.normal) > 0.0) continue;
-        add(a.side, b.side, key(Part::edges, one.number, other->number));
+        visit(a, b, found, key(Part::edges, one.number, other->number));
       }
     }
+  }
+
+  /// Whether an edge that lies behind another one, as their normal has it, lies in the other's body: far from the two
+  /// faces beside it there is no inside.
+  bool crosses_inside(const Edge& a, const Edge& b, const contact::Nearest& found) const {
+    const double gap = found.gap + a.placed.radius + b.placed.radius;  // of the axes
+    if (gap > -1e-9 * start_.model.size) return true;
+    const auto at = [](const Edge& own, const std::array<double, 3>& weights) {
+      return contact::point_at(weights[0] * own.placed.x[0] + weights[1] * own.placed.x[1], 0.0);
+    };
+    const auto in = [this](const Collider& body, const Simplex& point) {
+      return body.kind == Kind::rod || depth_in(body, point) > 0.0;
+    };
+    return in(b.side.on, at(a, found.a)) && in(a.side.on, at(b, found.b));
   }
 
   /// Whether two thin edges are as good as parallel: the plane through both is no normal then, and their ends meet the
@@ -475,10 +504,9 @@ class Search {
     return false;
   }
 
-  static constexpr double kFlat = 0.985;  ///< cosine of 10 degrees
-  static constexpr double kSame = 1e-9;   ///< part of an edge at whose ends two points are one
+  static constexpr double kSame = 1e-9;  ///< part of an edge at whose ends two points are one
   const Moment& start_;
-  double alarm_, depth_;
+  double alarm_, depth_, shallow_ = 0.0;
   const Surfaces& surfaces_;
   std::vector<ContactState>& found_;
   int pair_ = 0;

@@ -247,10 +247,13 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
       feet.b += apart.dot(u) * u;
     }
   }
-  // The tangent stands for the curve near its point alone: a foot further away is none.
+  // The tangent stands for the curve near its point alone, and an edge ends: a foot beyond that is none.
   constexpr double kNear = 0.5;  // of the piece
-  if ((curved(own.a, a) && (feet.a - first.x).norm() > kNear * first.speed) ||
-      (curved(own.b, b) && (feet.b - second.x).norm() > kNear * second.speed))
+  const auto on = [](double weight, double moved, bool bends) {
+    return bends ? std::abs(moved) <= kNear : weight + moved >= 0.0 && weight + moved <= 1.0;
+  };
+  if (!on(found.a[1], t.dot(feet.a - first.x) / std::max(first.speed, 1e-300), curved(own.a, a)) ||
+      !on(found.b[1], u.dot(feet.b - second.x) / std::max(second.speed, 1e-300), curved(own.b, b)))
     return {first.x, second.x};
   found.normal = n;
   found.gap = n.dot(feet.a - feet.b) - a.radius - b.radius;

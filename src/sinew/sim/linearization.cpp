@@ -221,8 +221,10 @@ bool Linearization::conservative() const {
                     });
 }
 
+bool Linearization::stability_known() const { return !rotated_ && coupled_ && conservative(); }
+
 bool Linearization::unstable() const {
-  return !rotated_ && coupled_ && conservative() && negative_ + factor_.negative() > context_->model.rows;
+  return stability_known() && negative_ + factor_.negative() > context_->model.rows;
 }
 
 void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer,

@@ -68,8 +68,10 @@ class Linearization {
   /// All forces have a potential here: the tangent is symmetric, and its negative eigenvalues tell of stability.
   bool conservative() const;
   bool rotated() const { return rotated_; }  ///< a definite tangent stood in for the exact one
-  /// The tangent has more negative eigenvalues than there are rows. Not known, and false, where it is not symmetric or
-  /// a definite one stood in.
+  /// Whether the number of negative eigenvalues says if the equilibrium is stable: the tangent is symmetric, and the
+  /// exact one.
+  bool stability_known() const;
+  /// The tangent has more negative eigenvalues than there are rows. False where that is not known.
   bool unstable() const;
   /// What was last solved in single precision could not be refined to what double precision gives.
   bool stalled() const { return stalled_; }

@@ -134,7 +134,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   };
   const auto complete = [&] {
     finish(context, iterate.state, here);
-    memory.passage = look_again(context, iterate.state, here.contacts(), memory.alarm);
+    const bool evaluated = !rules.fixed || rules.evaluation == Evaluation::full;
+    memory.passage = look_again(context, iterate.state, here.contacts(), evaluated, memory.alarm);
     report.contact = here.contact_report();
     if (memory.passage.overlap > report.contact.penetration) {
       report.contact.penetration = memory.passage.overlap;
@@ -199,6 +200,13 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
                     : report.newton > 0 && converged.met &&
                           contact_error <= context.model.scene.newton.tolerance * context.model.size) {
       report.at_floor = !rules.fixed && converged.at_floor;
+      // (The last factors are those of the iterate before, where soft motions may not have been at rest yet.)
+      std::string unknown;
+      if (context.rate == 0.0 && !rules.fixed && rules.evaluation == Evaluation::full &&
+          here.factor(solid::Tangent::exact, Linearization::Wanted::any, unknown)) {
+        report.unstable = here.unstable();
+        report.stability_known = here.stability_known();
+      }
       write_forces(here, iterate.state);
       return complete();
     }

@@ -113,6 +113,9 @@ struct StepReport {
   double violation = 0.0;  ///< [m] largest of all constraints: sliding points, ties, glue, motors, lengths of cables
   bool rotated = false;    ///< a definite tangent stood in for the exact one somewhere
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
+  /// Of statics: whether that could be told. Not where loads have no potential (follower forces, pressure on a surface
+  /// with a free rim), or a definite tangent had to stand in for the exact one.
+  bool stability_known = false;
   bool redundant = false;  ///< constraint rows depended on each other
   bool at_floor = false;   ///< forces were balanced to their rounding, not to the tolerance (`convergence_of`)
   /// [-] of an accepted step of `newton: n` that left much: how far a converged step from the same start ends beside

@@ -352,7 +352,18 @@ std::vector<int> ended_cells(const Body& body, const Eigen::Matrix3Xd& x) {
 
 std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x) {
   std::vector<int> folded;
+  // Of a linear tetrahedron det F is the ratio of its volumes.
+  const auto volume = [](const Cell& cell, const Eigen::Matrix3Xd& at) {
+    const Vec3 from = at.col(cell.node[0]);
+    const Vec3 d = at.col(cell.node[1]) - from, e = at.col(cell.node[2]) - from;
+    return d.cross(e).dot(at.col(cell.node[3]) - from);
+  };
   for (int e = 0; e < body.elements(); ++e) {
+    const Cell& cell = body.cells[static_cast<std::size_t>(e)];
+    if (cell.kind == Kind::tet4) {
+      if (!(volume(cell, x) * volume(cell, body.rest) > 0.0)) folded.push_back(e);
+      continue;
+    }
     const ElementRest rest = body.element(e);
     const NodeVectors own = body.at_nodes(e, x);
     for (std::size_t q = 0; q < rest.volumes.size(); ++q) {

@@ -1,0 +1,87 @@
+#include "sinew/sim/contact_surfaces.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace sinew {
+
+using Kind = Collider::Kind;
+
+namespace {
+
+void fit_boxes(Surface& own) {
+  const contact::Mesh& mesh = *own.mesh;
+  const Eigen::Matrix3Xd& x = own.x;
+  contact::find_outward(mesh, x, own.outward);
+  own.boxes.clear();
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    contact::Box& box = own.boxes.emplace_back();
+    for (const int point : t) box.extend(Vec3(x.col(point)));
+  }
+  own.faces.fit(own.boxes);
+  own.boxes.clear();
+  for (const contact::Ridge& ridge : mesh.ridges) {
+    contact::Box& box = own.boxes.emplace_back();
+    for (const int point : ridge.ends) box.extend(Vec3(x.col(point)));
+  }
+  own.edges.fit(own.boxes);
+}
+
+}  // namespace
+
+void Surfaces::fit(const Collider& own, const Moment& now) {
+  std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
+  if (static_cast<int>(all.size()) <= own.number) all.resize(static_cast<std::size_t>(own.number) + 1);
+  Surface& surface = all[static_cast<std::size_t>(own.number)];
+  if (!surface.mesh) {
+    const auto mesh = mesh_of(now.model, own);
+    if (!mesh) return;
+    surface.faces = mesh->faces;
+    surface.edges = mesh->edges;
+    surface.mesh = mesh;  // last, as the pose below: memory may run out
+  }
+  if (!is_rigid(own)) {
+    surface.x = now.state.solids[own.number].x;
+    fit_boxes(surface);
+    return;
+  }
+  const contact::Pose pose = now.pose(own);
+  if (surface.pose && surface.pose->R == pose.R && surface.pose->p == pose.p) return;
+  surface.pose.reset();
+  surface.x = (pose.R * surface.mesh->points).colwise() + pose.p;
+  fit_boxes(surface);
+  surface.pose = pose;
+}
+
+void Surfaces::fit(const Moment& now) {
+  std::vector<Collider> fitted;
+  for (const PairModel& pair : now.model.pairs) {
+    for (const Collider& own : {pair.a, pair.b}) {
+      if (own.kind == Kind::rod || std::find(fitted.begin(), fitted.end(), own) != fitted.end()) continue;
+      fitted.push_back(own);
+      fit(own, now);
+    }
+  }
+}
+
+const Surface* Surfaces::of(const Collider& own) const {
+  if (own.kind == Kind::rod) return nullptr;
+  const std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
+  if (static_cast<int>(all.size()) <= own.number) return nullptr;
+  const Surface& surface = all[static_cast<std::size_t>(own.number)];
+  return surface.mesh ? &surface : nullptr;
+}
+
+std::optional<Vec3> outward_of_ridge(const Surface& surface, const contact::Ridge& ridge) {
+  constexpr double kFlat = 0.985;  // cosine of 10 degrees
+  const auto at = [&surface](int point) { return Vec3(surface.x.col(point)); };
+  if (ridge.sides[0] == ridge.sides[1])  // the rim of an open surface
+    return (surface.outward.points.col(ridge.ends[0]) + surface.outward.points.col(ridge.ends[1])).normalized();
+  const Vec3 from = at(ridge.ends[0]), along = at(ridge.ends[1]) - from, first = at(ridge.sides[0]) - from,
+             second = at(ridge.sides[1]) - from;
+  const Vec3 n = along.cross(first).normalized(), m = second.cross(along).normalized();
+  if (n.dot(m) > kFlat || second.dot(n) > 0.0) return std::nullopt;
+  return (n + m).normalized();
+}
+
+}  // namespace sinew
