@@ -4,26 +4,17 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "sinew/sim/modal.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/run.hpp"
+#include "support/random.hpp"
 #include "support/scenes.hpp"
 
 namespace sinew {
 namespace {
 
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double operator()(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
-  int whole(int from, int to) { return std::uniform_int_distribution<int>(from, to)(engine_); }
-  bool chance(double part) { return (*this)(0.0, 1.0) < part; }
-
- private:
-  std::mt19937 engine_;
-};
+using test::Random;
 
 /// Stress-free with this curvature [1/m].
 RestStrains bent(double length, double curvature) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from .scene import Judge, Row, Scene, shape_of, table
+from .scene import Judge, Row, Scene, from_nowhere, shape_of, table
 
 
 def moving_frame(random_: random.Random) -> tuple[Scene, Judge]:
@@ -53,6 +53,7 @@ def moving_frame(random_: random.Random) -> tuple[Scene, Judge]:
         scene["outputs"] = {"e": {"solid": "s", "point": [0, 0, 0]}}
 
     def judge(rows: list[Row], report: Any) -> list[str]:
-        return [own["message"] for own in report["warnings"] if own["code"] == "energy_gain"]
+        told = [own["message"] for own in report["warnings"] if own["code"] == "energy_gain"]
+        return told or from_nowhere(rows)
 
     return scene, judge

@@ -6,7 +6,7 @@ import math
 import random
 from typing import Any, Callable
 
-from .scene import Judge, Maker, Row, Scene, Vec, at, cross, crosses, dot, mix, norm, segment_distance, shape_of, sub, table
+from .scene import Judge, Maker, Row, Scene, Vec, at, crosses, mix, norm, segment_distance, shape_of, sub, table
 
 
 def rod_points(length: float, count: int, rod: str = "r") -> tuple[dict[str, Any], list[str]]:
@@ -191,7 +191,7 @@ def rod_at_wall(random_: random.Random) -> tuple[Scene, Judge]:
     steps = int(min(max(3 * (gap + 4 * radius) / way, 8), 60))
     start = (0.0, 0.0, radius + gap)
     end = (length * math.cos(turn), 0.0, radius + gap + length * math.sin(turn))
-    outputs, names = rod_points(length, 2 * sections + 1)
+    outputs, names = rod_points(length, 6 * sections + 1)
     how = random_.choice(["load", "frame", "wall"])
     scene: Scene = {
         "time": {"step": h, "duration": h * steps},
@@ -255,7 +255,7 @@ def solid_at_wall(random_: random.Random) -> tuple[Scene, Judge]:
     total = min(way * steps, gap + 0.025)
     shape: dict[str, Any] = random_.choice([{"box": {"size": [0.02, 0.2, 0.01]}}, {"capsule": {"radius": 0.005, "length": 0.2}},
                             {"sphere": {"radius": 0.01}}])
-    lower = 0.5 * shape["box"]["size"][2] if "box" in shape else next(iter(shape.values()))["radius"]
+    lower: float = 0.5 * shape["box"]["size"][2] if "box" in shape else next(iter(shape.values()))["radius"]
     place = [0.08, 0, -0.008 - lower - gap]
     pose: dict[str, Any] = {"translate": place}
     if "capsule" in shape:
@@ -275,13 +275,18 @@ def solid_at_wall(random_: random.Random) -> tuple[Scene, Judge]:
     }
     scene["obstacles"]["o"]["frame"] = "hand"
 
+    def depth(x: float, y: float, z: float) -> float:
+        if "box" in shape:
+            return min(0.01 - abs(x), 0.1 - abs(y), lower - abs(z))
+        return lower - math.hypot(x, z if "capsule" in shape else math.hypot(y, z))
+
     def judge(rows: list[Row], _: Any) -> list[str]:
         for row in rows:
             height = place[2] + total * row["time"] / (h * steps)
             for name in points:
                 x, y, z = at(row, name)
-                if abs(x - 0.08) < 0.5 * lower and abs(y) < 0.5 * lower and z < height:
-                    return [f"the body is {1e3 * (height + lower - z):.3g} mm in the obstacle at t = {row['time']:.4g} s"]
+                if depth(x - 0.08, y, z - height) > 0.3 * min(0.016, 2 * lower):
+                    return [f"the body is {1e3 * depth(x - 0.08, y, z - height):.3g} mm in the obstacle at t = {row['time']:.4g} s"]
         return []
 
     return scene, judge

@@ -140,8 +140,8 @@ class Meet {
   void polyhedra(const Shape& first, const Pose& at, const Shape& second, const Pose& there);
 
  private:
-  /// Adds the corners of both that are as near to the other one as any, but for `some` [m], and nearer than `least`,
-  /// with the parts that they are near to.
+  /// Adds the corners of both that are as near to the other one as any, or as `least`, but for `some` [m], with the
+  /// parts that they are near to.
   void nearest_corners(const Shape& first, const Pose& at, const Shape& second, const Pose& there, double some,
                        double least);
   /// The axis of a capsule, in the polyhedron's axes, against its edges and corners. While it is outside, an edge meets

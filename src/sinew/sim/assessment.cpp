@@ -285,7 +285,7 @@ Loose loose_energy(const Model& model, const State& state) {
 
 bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& room) {
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
-    if (model.pairs[iterate.contacts[i].pair].depth > 0.0 && room.gaps[i] < -1e-9 * model.size) return true;
+    if (model.pairs[iterate.contacts[i].pair].depth > 0.0 && room.gaps[i] < -1e-6 * model.size) return true;
   }
   return false;
 }

@@ -198,8 +198,8 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
         found.overlap = between;
         found.overlapping = static_cast<int>(i);
       }
-      if (between > std::max(kDeepest * thin, found.depth)) {
-        found.kind = Passage::Kind::passed;
+      if (between > std::max(kDeepest * thin, found.depth) && found.kind != Passage::Kind::missed) {
+        found.kind = Passage::Kind::folded;
         found.pair = static_cast<int>(i);
         found.depth = between;
       }

@@ -19,7 +19,7 @@ namespace sinew {
 
 /// What the second look found.
 struct Passage {
-  enum class Kind { none, missed, passed };
+  enum class Kind { none, missed, passed, folded };
   Kind kind = Kind::none;
   int pair = -1;         ///< of the model's, the deepest
   double depth = 0.0;    ///< [m] of its overlap on the way

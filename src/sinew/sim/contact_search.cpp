@@ -467,8 +467,8 @@ class Search {
   /// Whether an edge that lies behind another one, as their normal has it, lies in the other's body: far from the two
   /// faces beside it there is no inside.
   bool crosses_inside(const Edge& a, const Edge& b, const contact::Nearest& found) const {
-    const double gap = found.gap + a.placed.radius + b.placed.radius;  // of the axes
-    if (gap > -1e-9 * start_.model.size) return true;
+    const double gap = found.gap + a.placed.radius + b.placed.radius;            // of the axes
+    if (gap > -1e-6 * start_.model.size || a.side.on == b.side.on) return true;  // (a body is not in itself)
     const auto at = [](const Edge& own, const std::array<double, 3>& weights) {
       return contact::point_at(weights[0] * own.placed.x[0] + weights[1] * own.placed.x[1], 0.0);
     };

@@ -1,6 +1,7 @@
 #include "sinew/sim/newton.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -152,8 +153,12 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       }
     }
     if (memory.passage.kind != Passage::Kind::none && accepted(report.status)) {
-      char text[64];
-      std::snprintf(text, sizeof text, " by %.3g mm on the way", 1e3 * memory.passage.depth);
+      char text[96];
+      std::snprintf(text, sizeof text,
+                    memory.passage.kind == Passage::Kind::folded
+                        ? ": %.3g mm of the rod lies in it between two points; give the rod more sections"
+                        : " by %.3g mm on the way",
+                    1e3 * memory.passage.depth);
       report.status = Status::passed_through;
       report.detail = name_of_pair(context.model, memory.passage.pair) + text;
     }
@@ -202,10 +207,15 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       report.at_floor = !rules.fixed && converged.at_floor;
       // (The last factors are those of the iterate before, where soft motions may not have been at rest yet.)
       std::string unknown;
-      if (context.rate == 0.0 && !rules.fixed && rules.evaluation == Evaluation::full &&
-          here.factor(solid::Tangent::exact, Linearization::Wanted::any, unknown)) {
-        report.unstable = here.unstable();
-        report.stability_known = here.stability_known();
+      if (context.rate == 0.0 && !rules.fixed && rules.evaluation == Evaluation::full) {
+        report.stability_known =
+            here.factor(solid::Tangent::exact, Linearization::Wanted::any, unknown) && here.stability_known();
+        report.unstable = report.stability_known && here.unstable();
+        // What is stable without contacts is so with them; of the rest they may hold what would buckle.
+        const auto presses = [](const ContactState& own) { return !own.force.isZero(); };
+        const std::vector<ContactState>& contacts = iterate.state.contacts;
+        if (report.unstable && std::any_of(contacts.begin(), contacts.end(), presses))
+          report.stability_known = report.unstable = false;
       }
       write_forces(here, iterate.state);
       return complete();
@@ -233,7 +243,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (!here.factor(rules.fixed ? solid::Tangent::definite : solid::Tangent::exact, rules.wanted, failed))
       return fail(Status::singular, failed + single);
     report.rotated |= here.rotated();
-    if (context.rate == 0.0) report.unstable = here.unstable();
+    if (context.rate == 0.0 && !rules.fixed) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
     if (rules.inverse) {
       const auto steer = [&](Increment& step) { rules.inverse->steer(context, iterate.state, here, step); };

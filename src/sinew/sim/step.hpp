@@ -113,8 +113,8 @@ struct StepReport {
   double violation = 0.0;  ///< [m] largest of all constraints: sliding points, ties, glue, motors, lengths of cables
   bool rotated = false;    ///< a definite tangent stood in for the exact one somewhere
   bool unstable = false;   ///< of statics: the equilibrium is one that a real rod would leave (it has buckled)
-  /// Of statics: whether that could be told. Not where loads have no potential (follower forces, pressure on a surface
-  /// with a free rim), or a definite tangent had to stand in for the exact one.
+  /// Of statics: whether that could be told. Not of loads without a potential (follower forces, pressure on a surface
+  /// with a free rim), where contacts may hold what would buckle, of `newton: n` or a definite tangent in its stead.
   bool stability_known = false;
   bool redundant = false;  ///< constraint rows depended on each other
   bool at_floor = false;   ///< forces were balanced to their rounding, not to the tolerance (`convergence_of`)
