@@ -31,7 +31,8 @@ bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& ro
 
 /// Names a step whose contacts have added energy: kinetic, elastic and that of weight have grown by more than what was
 /// put in and a thousandth of what there is. Impacts take energy; a step that is too long may find another solution, as
-/// a thin rod that friction has spun round. Empty of all other steps. (One that moves bodies apart adds what it has to.)
+/// a thin rod that friction has spun round. Empty of all other steps. (One that moves bodies apart adds what it has
+/// to.)
 std::string contact_adds_energy(const StepContext& context, const State& next);
 
 /// "actuators.a, actuators.b contradict each other by 2 mm; drive one of them by force ...".
