@@ -86,6 +86,8 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   const contact::Pose pose = now.pose(hard);
   const Vec3 reach = contact::reach(shape_of(model, hard), Eigen::Matrix3d::Identity());
   double deepest = 0.0;
+  const double far = reach.norm() + 2.0 * rod.rod.length();  // (more than its radius away)
+  if ((rod::position(now.rods[bent.number], 0.0) - pose.p).norm() > far) return 0.0;
   for (std::size_t i = 0; i + 1 < rod.touching.size(); ++i) {
     for (int k = 1; k < kPlacesOfPiece; ++k) {
       const double s = std::lerp(rod.touching[i], rod.touching[i + 1], static_cast<double>(k) / kPlacesOfPiece);
@@ -191,18 +193,16 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const double speed = motion_of(pair.a) + motion_of(pair.b);
     found.alarm = std::max(found.alarm, speed);
     const double thin = room.thin[i];
-    const auto of_pair = [i](const ContactState& own) { return own.pair == static_cast<int>(i); };
-    if (std::any_of(next.contacts.begin(), next.contacts.end(), of_pair)) {
-      const double between = deepest_between(end, pair) - pair.depth;
-      if (between > std::max(kDeepestBetween * thin, found.overlap)) {
-        found.overlap = between;
-        found.overlapping = static_cast<int>(i);
-      }
-      if (between > std::max(kDeepest * thin, found.depth) && found.kind != Passage::Kind::missed) {
-        found.kind = Passage::Kind::folded;
-        found.pair = static_cast<int>(i);
-        found.depth = between;
-      }
+    // (Whatever was found: chords of what has folded may lie too deep to be met.)
+    const double between = deepest_between(end, pair) - pair.depth;
+    if (between > std::max(kDeepestBetween * thin, found.overlap)) {
+      found.overlap = between;
+      found.overlapping = static_cast<int>(i);
+    }
+    if (between > std::max(kDeepest * thin, found.depth) && found.kind != Passage::Kind::missed) {
+      found.kind = Passage::Kind::folded;
+      found.pair = static_cast<int>(i);
+      found.depth = between;
     }
     const bool shapes = are_shapes(model, pair);
     const bool known = shapes && std::any_of(room.found.begin(), room.found.end(),
