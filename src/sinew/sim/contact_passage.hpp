@@ -28,9 +28,9 @@ struct Passage {
   double alarm = 0.0;    ///< [m] within which contacts are to be looked for to find all that may meet
 };
 
-/// Looks along the motion from the start of a step to `next`, at which `room` is `evaluated`, or not yet. `alarm` is that
-/// within which it was filled. Of what moved by less than that, and than the thickness of what may meet, only rods are
-/// looked at.
+/// Looks along the motion from the start of a step to `next`, at which `room` is `evaluated`, or not yet. `alarm` is
+/// that within which it was filled. Of what moved by less than that, and than the thickness of what may meet, only rods
+/// are looked at.
 Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, bool evaluated,
                    double alarm);
 
