@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from .scene import Judge, Row, Scene, from_nowhere, shape_of, table
+from .scene import Judge, Row, Scene, from_nowhere, shape_of
 
 
 def moving_frame(random_: random.Random) -> tuple[Scene, Judge]:
