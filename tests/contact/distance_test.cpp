@@ -16,11 +16,6 @@ using test::hull_of;
 using test::Random;
 using test::Support;
 
-Pose random_pose(Random& random, double far) {
-  const Eigen::Matrix3d R = random.rotation();
-  return {R, random.vector(far)};
-}
-
 /// A shape's core, a polytope in the world, and the radius around it.
 struct Core {
   std::vector<Vec3> points;
@@ -79,7 +74,7 @@ void look_at_round_shapes(int placements, unsigned seed) {
   for (int i = 0; i < placements; ++i) {
     const int first = i % 2, second = (i / 2) % 5;
     const Shape a = random_shape(random, first), b = random_shape(random, second);
-    const Pose at = random_pose(random, 1.0), there = random_pose(random, 0.3);
+    const Pose at = random.placed<Pose>(1.0), there = random.placed<Pose>(0.3);
     const Core core_a = core_of(a, at), core_b = core_of(b, there);
     const double cores = distance_of(hull_of(core_a.points), hull_of(core_b.points));
     const double expected = cores - core_a.radius - core_b.radius, found = least_gap(a, at, b, there, 3.0);
@@ -108,7 +103,7 @@ void look_at_polyhedra(int placements, unsigned seed) {
   int overlaps = 0, apart = 0;
   for (int i = 0; i < placements; ++i) {
     const Shape a = random_shape(random, 2 + i % 3), b = random_shape(random, 2 + (i / 3) % 3);
-    const Pose at = random_pose(random, 0.8), there = random_pose(random, 0.3);
+    const Pose at = random.placed<Pose>(0.8), there = random.placed<Pose>(0.3);
     const double expected = distance_of(hull_of(core_of(a, at).points), hull_of(core_of(b, there).points)),
                  found = least_gap(a, at, b, there, 3.0);
     if (expected > 1e-9) {

@@ -22,6 +22,11 @@ class Random {
     const Eigen::Vector4d q(Eigen::Vector4d::NullaryExpr([&] { return std::normal_distribution<double>()(engine_); }));
     return Eigen::Quaterniond(q).normalized().toRotationMatrix();
   }
+  /// Turned anyhow, in the cube of this half edge: a contact::Pose, a Placement.
+  template <class Placed>
+  Placed placed(double far) {
+    return Placed{rotation(), vector(far)};
+  }
 
  private:
   std::mt19937 engine_;

@@ -19,11 +19,6 @@ namespace {
 
 using test::Random;
 
-Placement random_placement(Random& random, double far) {
-  const Eigen::Matrix3d R = random.rotation();
-  return {R, random.vector(far)};
-}
-
 /// Convex pieces, the hulls of points with a radius around them, that an object consists of; a half-space is below the
 /// plane z = 0.
 struct Piece {
@@ -271,8 +266,8 @@ Found look_at(Kind first, Kind second, int placements, double bend, unsigned see
     const PairModel& pair = model.pairs[0];
     const bool swapped = pair.a.kind == Collider::Kind::obstacle;
     for (int i = 0; i < kOfOneModel; ++i) {
-      const Pieces a = put(random, model, state, swapped ? pair.b : pair.a, random_placement(random, 0.8), bend),
-                   b = put(random, model, state, swapped ? pair.a : pair.b, random_placement(random, 0.2), bend);
+      const Pieces a = put(random, model, state, swapped ? pair.b : pair.a, random.placed<Placement>(0.8), bend),
+                   b = put(random, model, state, swapped ? pair.a : pair.b, random.placed<Placement>(0.2), bend);
       const double expected = distance(a, b);
       const bool overlap = !overlaps(model, state).empty();
       if (expected <= 1e-9) {

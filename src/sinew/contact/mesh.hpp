@@ -9,8 +9,8 @@
 
 namespace sinew::contact {
 
-/// Two points of a surface's edge, and the third one of each of the triangles that meet in it (the same one where there
-/// is only one triangle).
+/// Two points of a surface's edge, as the first triangle runs round it, and the third one of each of the triangles that
+/// meet in it (the same one where there is only one).
 struct Ridge {
   std::array<int, 2> ends, sides;
 };

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "sinew/sim/surface_overlap.hpp"
+
 namespace sinew {
 
 using Kind = Collider::Kind;
@@ -109,21 +111,17 @@ class Search {
     if (!surface) return 0.0;
     double deepest = 0.0;
     for (const Edge& edge : edges_of(poking, around(faced))) {
-      const Vec3 from = edge.placed.x[0], along = edge.placed.x[1] - from;
       std::vector<double> passes;
       surface->faces.each_near(edge.box, [&](int number) {
         const std::array<int, 3>& t = surface->mesh->triangles[number];
-        const Vec3 x = surface->x.col(t[0]), d = surface->x.col(t[1]) - x, e = surface->x.col(t[2]) - x;
-        const Vec3 n = d.cross(e);
-        const double height = n.dot(x - from) / n.dot(along);
-        if (!(height >= 0.0 && height <= 1.0)) return;
-        const Vec3 at = from + height * along - x;
-        const double u = at.cross(e).dot(n) / n.squaredNorm(), v = d.cross(at).dot(n) / n.squaredNorm();
-        if (u >= 0.0 && v >= 0.0 && u + v <= 1.0) passes.push_back(height);
+        const auto at = pierced_at(edge.placed.x[0], edge.placed.x[1],
+                                   {surface->x.col(t[0]), surface->x.col(t[1]), surface->x.col(t[2])});
+        if (at) passes.push_back(*at);
       });
       std::sort(passes.begin(), passes.end());
       for (std::size_t i = 0; i + 1 < passes.size(); ++i) {
-        const Vec3 middle = from + 0.5 * (passes[i] + passes[i + 1]) * along;
+        const double part = 0.5 * (passes[i] + passes[i + 1]);
+        const Vec3 middle = (1.0 - part) * edge.placed.x[0] + part * edge.placed.x[1];
         deepest = std::max(deepest, depth_in(faced, contact::point_at(middle, edge.placed.radius)));
       }
     }

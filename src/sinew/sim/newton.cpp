@@ -205,9 +205,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
                     : report.newton > 0 && converged.met &&
                           contact_error <= context.model.scene.newton.tolerance * context.model.size) {
       report.at_floor = !rules.fixed && converged.at_floor;
-      // (The last factors are those of the iterate before, where soft motions may not have been at rest yet.)
-      std::string unknown;
-      if (context.rate == 0.0 && !rules.fixed && rules.evaluation == Evaluation::full) {
+      if (context.rate == 0.0 && !rules.fixed) {
+        // (The last factors are those of the iterate before, where soft motions may not have been at rest yet.)
+        std::string unknown;
         report.stability_known =
             here.factor(solid::Tangent::exact, Linearization::Wanted::any, unknown) && here.stability_known();
         report.unstable = report.stability_known && here.unstable();
@@ -243,7 +243,6 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (!here.factor(rules.fixed ? solid::Tangent::definite : solid::Tangent::exact, rules.wanted, failed))
       return fail(Status::singular, failed + single);
     report.rotated |= here.rotated();
-    if (context.rate == 0.0 && !rules.fixed) report.unstable = here.unstable();
     stiffness = std::max(stiffness, here.stiffness());
     if (rules.inverse) {
       const auto steer = [&](Increment& step) { rules.inverse->steer(context, iterate.state, here, step); };

@@ -13,12 +13,7 @@ using Corners = std::array<Vec3, 3>;
 /// Six times the signed volume of a tetrahedron.
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
 
-/// Whether the segment from p to q goes through the inside of a triangle.
-bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
-  if (volume(t[0], t[1], t[2], p) * volume(t[0], t[1], t[2], q) >= 0.0) return false;
-  const double a = volume(p, q, t[0], t[1]), b = volume(p, q, t[1], t[2]), c = volume(p, q, t[2], t[0]);
-  return (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
-}
+bool pierces(const Vec3& p, const Vec3& q, const Corners& t) { return pierced_at(p, q, t).has_value(); }
 
 /// Whether two triangles cross: an edge of one goes through the other.
 bool cross(const Corners& s, const Corners& t) {
@@ -44,6 +39,14 @@ bool stopped(const Model& model, int solid, int other) {
 }
 
 }  // namespace
+
+std::optional<double> pierced_at(const Vec3& p, const Vec3& q, const Corners& t) {
+  const double from = volume(t[0], t[1], t[2], p), to = volume(t[0], t[1], t[2], q);
+  if (from * to >= 0.0) return std::nullopt;
+  const double a = volume(p, q, t[0], t[1]), b = volume(p, q, t[1], t[2]), c = volume(p, q, t[2], t[0]);
+  const bool inside = (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
+  return inside ? std::optional(from / (from - to)) : std::nullopt;
+}
 
 SurfaceWatch::SurfaceWatch(const Model& model) : model_(&model) {
   const auto count = static_cast<int>(model.solids.size());

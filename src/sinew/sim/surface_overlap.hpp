@@ -1,13 +1,19 @@
 // Solids that pass through themselves or each other: their surfaces cross where no contact pair stops them.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sinew/contact/mesh.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew {
+
+/// Where the segment from p to q goes through the inside of a triangle, as a part of its length; none where it does
+/// not.
+std::optional<double> pierced_at(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& triangle);
 
 /// Two surfaces that cross each other, or one that crosses itself.
 struct SurfaceOverlap {
