@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/solid/invariants.hpp"
+
 namespace sinew::solid {
 
 ElementRest Body::element(int cell) const {

@@ -4,7 +4,6 @@
 #include <variant>
 
 #include "sinew/solid/corotational.hpp"
-#include "sinew/solid/invariants.hpp"
 #include "sinew/solid/law.hpp"
 #include "sinew/solid/mooney_rivlin.hpp"
 #include "sinew/solid/neo_hookean.hpp"

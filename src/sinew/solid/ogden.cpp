@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/solid/invariants.hpp"
 #include "sinew/solid/principal.hpp"
 
 namespace sinew::solid {
@@ -19,6 +20,8 @@ Ogden ogden(std::span<const OgdenTerm> terms, const Compressibility& given) {
   law.moduli = lame_from_bulk(shear, bulk_modulus(shear, given));
   return law;
 }
+
+Part Ogden::dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
 
 Part Ogden::shape(const Mat3& F, Derivatives wanted) const {
   Part w = isochoric(F, wanted);

@@ -9,7 +9,6 @@
 #include <array>
 #include <span>
 
-#include "sinew/solid/invariants.hpp"
 #include "sinew/solid/law.hpp"
 #include "sinew/solid/moduli.hpp"
 
@@ -28,7 +27,7 @@ struct Ogden {
   Lame moduli;  ///< at rest
 
   Part shape(const Mat3& F, Derivatives wanted) const;
-  Part dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
+  Part dilatation(const Mat3& F, Derivatives wanted) const;
   Volumetric volumetric(double v) const { return quadratic(moduli.lambda, v - 1.0); }
   Lame lame() const { return moduli; }
 
