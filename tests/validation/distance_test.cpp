@@ -295,7 +295,7 @@ double promised(Kind first, Kind second, double bend) {
   const bool round = is(Kind::plane) || is(Kind::sphere), triangles = is(Kind::mesh) || is(Kind::solid);
   double error = triangles ? 1e-5 : 1e-6;
   if (is(Kind::cylinder)) error = round ? 1e-5 : first == second ? 1.3e-3 : 7e-4;
-  if (is(Kind::rod) && (!round || bend > 0.0)) error = std::max(error, is(Kind::cylinder) ? 1.5e-3 : 1e-3);
+  if (is(Kind::rod) && bend > 0.0) error = std::max(error, is(Kind::cylinder) ? 1.5e-3 : 1e-3);
   return error;
 }
 

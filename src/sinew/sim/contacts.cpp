@@ -146,42 +146,74 @@ struct Feet {
   Vec3 a, b;
 };
 
-/// Where two parts are nearest, one of them a piece of a rod, from where their chords are: Gauss and Newton's method
-/// for min |x_a - x_b|^2 within both. A rod that lies along a drum of about its own curvature is equally near all
-/// along; there the chords' places, which are unique, stay.
-void refine_place(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
-                  contact::Nearest& found) {
+bool is_piece_of_rod(const ContactSide& side, const Simplex& placed) {
+  return side.on.kind == Kind::rod && placed.corners() == 2;
+}
+
+/// The second weights that a contact of a line may have: a rod goes on beyond its piece, an edge ends.
+struct Reach {
+  double from = 0.0, to = 1.0;
+  bool has(double weight) const { return weight >= from && weight <= to; }
+};
+Reach reach_of(const Moment& now, const ContactSide& side, const Simplex& placed) {
+  constexpr double kBeyond = 0.5;  // of the piece: further away another one touches
+  if (!is_piece_of_rod(side, placed)) return {};
+  const bool first = side.abscissae[0] <= 0.0, last = side.abscissae[1] >= now.rods[side.on.number].rod->length();
+  return {first ? 0.0 : -kBeyond, last ? 1.0 : 1.0 + kBeyond};
+}
+
+/// Where two parts are nearest within these reaches, one of them a piece of a rod, from where their chords are: Gauss
+/// and Newton's method for min |x_a - x_b|^2. False where a rod lies along a drum of about its own curvature and is
+/// equally near all along.
+bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
+                       const Reach& reach_a, const Reach& reach_b, contact::Nearest& found) {
   constexpr double kLiesAlong = 0.3;  // of the distance of the axes times the curvature
   constexpr int kMostIterations = 10;
   std::array<double, 3>&s = found.a, &t = found.b;
-  const std::array<double, 3> chord_s = s, chord_t = t;
-  const auto move = [](std::array<double, 3>& weights, double by) {
+  const auto move = [](std::array<double, 3>& weights, const Reach& reach, double by) {
     const double before = weights[1];
-    weights[1] = std::clamp(before + by, 0.0, 1.0);
+    weights[1] = std::clamp(before + by, reach.from, reach.to);
     weights[0] = 1.0 - weights[1];
     return weights[1] - before;
   };
   for (int i = 0; i < kMostIterations; ++i) {
     const LinePoint first = line_point(now, own.a, a, s), second = line_point(now, own.b, b, t);
     const Vec3 apart = first.x - second.x, dx = first.speed * first.tangent, dy = second.speed * second.tangent;
-    if (std::max(std::abs(apart.dot(first.bend)), std::abs(apart.dot(second.bend))) > kLiesAlong) {
-      s = chord_s;
-      t = chord_t;
-      return;
-    }
+    if (std::max(std::abs(apart.dot(first.bend)), std::abs(apart.dot(second.bend))) > kLiesAlong) return false;
     const double aa = dx.squaredNorm(), bb = dy.squaredNorm(), ab = dx.dot(dy), fa = apart.dot(dx), fb = -apart.dot(dy),
                  determinant = aa * bb - ab * ab;
     double moved = 0.0;
     if (determinant > 1e-3 * aa * bb) {
-      moved =
-          std::abs(move(s, -(bb * fa + ab * fb) / determinant)) + std::abs(move(t, -(aa * fb + ab * fa) / determinant));
+      moved = std::abs(move(s, reach_a, -(bb * fa + ab * fb) / determinant)) +
+              std::abs(move(t, reach_b, -(aa * fb + ab * fa) / determinant));
     } else if (aa > 0.0) {
-      moved = std::abs(move(s, -fa / aa));
+      moved = std::abs(move(s, reach_a, -fa / aa));
     } else if (bb > 0.0) {
-      moved = std::abs(move(t, -fb / bb));
+      moved = std::abs(move(t, reach_b, -fb / bb));
     }
-    if (moved < 1e-14) return;
+    if (moved < 1e-14) break;
   }
+  return true;
+}
+
+/// Brings the places of a contact from the chords to the curves of rods, also where these go on beyond its pieces, as
+/// far as it reaches. One that then comes to the end of its reach, or of the other part, leaves that to the contacts of
+/// what is there and stays on its pieces; places on chords, which are unique, stay where a rod lies along.
+void refine_place(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
+                  contact::Nearest& found) {
+  const Reach reach_a = reach_of(now, own.a, a), reach_b = reach_of(now, own.b, b);
+  const auto leaves = [](const Simplex& placed, const Reach& reach, double chord, double weight) {
+    const bool on_chord =
+        chord > 0.0 && chord<1.0, on = weight> 0.0 && weight<1.0, inside = weight> reach.from && weight < reach.to;
+    const bool goes_on = reach.from < 0.0 || reach.to > 1.0;
+    return placed.corners() == 2 && (goes_on ? !on && !inside : on_chord && !on);
+  };
+  const contact::Nearest on_chords = found;
+  if (nearest_on_curves(now, own, a, b, reach_a, reach_b, found) && !leaves(a, reach_a, on_chords.a[1], found.a[1]) &&
+      !leaves(b, reach_b, on_chords.b[1], found.b[1]))
+    return;
+  found = on_chords;
+  if (!nearest_on_curves(now, own, a, b, {}, {}, found)) found = on_chords;
 }
 
 /// The normal of a rod's point on a face, perpendicular to the rod. A smooth rod touches a flat face with its tangent
@@ -218,12 +250,10 @@ void face_across(const Moment& now, const ContactSide& side, double radius, cons
 /// kappa / 2.
 Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                    contact::Nearest& found) {
-  const auto curved = [](const ContactSide& side, const Simplex& placed) {
-    return side.on.kind == Kind::rod && placed.corners() == 2;
-  };
-  if (curved(own.a, a) || curved(own.b, b)) refine_place(now, own, a, b, found);
+  const bool curved_a = is_piece_of_rod(own.a, a), curved_b = is_piece_of_rod(own.b, b);
+  if (curved_a || curved_b) refine_place(now, own, a, b, found);
   const LinePoint first = line_point(now, own.a, a, found.a), second = line_point(now, own.b, b, found.b);
-  if (!curved(own.a, a) && !curved(own.b, b)) {
+  if (!curved_a && !curved_b) {
     if (own.a.on.kind == Kind::rod && (b.kind == Simplex::Kind::plane || b.kind == Simplex::Kind::triangle))
       face_across(now, own.a, a.radius, b, found);
     return {first.x, second.x};
@@ -231,6 +261,10 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
   constexpr double kParallel = 0.05;  // sine of the angle below which two lines are side by side
   const Vec3 &t = first.tangent, &u = second.tangent, apart = first.x - second.x, both = t.cross(u);
   Vec3 n = found.normal;
+  if (const double distance = apart.norm(); distance > 1e-9 * now.model.size)
+    n = apart.dot(n) < 0.0 ? Vec3(-apart / distance) : Vec3(apart / distance);
+  found.normal = n;
+  found.gap = n.dot(apart) - a.radius - b.radius;
   Feet feet{first.x, second.x};
   if (both.norm() > kParallel) {
     n = both.dot(n) < 0.0 ? Vec3(-both.normalized()) : Vec3(both.normalized());
@@ -247,13 +281,9 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
       feet.b += apart.dot(u) * u;
     }
   }
-  // The tangent stands for the curve near its point alone, and an edge ends: a foot beyond that is none.
-  constexpr double kNear = 0.5;  // of the piece
-  const auto on = [](double weight, double moved, bool bends) {
-    return bends ? std::abs(moved) <= kNear : weight + moved >= 0.0 && weight + moved <= 1.0;
-  };
-  if (!on(found.a[1], t.dot(feet.a - first.x) / std::max(first.speed, 1e-300), curved(own.a, a)) ||
-      !on(found.b[1], u.dot(feet.b - second.x) / std::max(second.speed, 1e-300), curved(own.b, b)))
+  // The tangent stands for the curve near its point alone, and edges and rods end: a foot beyond that is none.
+  if (!reach_of(now, own.a, a).has(found.a[1] + t.dot(feet.a - first.x) / std::max(first.speed, 1e-300)) ||
+      !reach_of(now, own.b, b).has(found.b[1] + u.dot(feet.b - second.x) / std::max(second.speed, 1e-300)))
     return {first.x, second.x};
   found.normal = n;
   found.gap = n.dot(feet.a - feet.b) - a.radius - b.radius;
@@ -261,7 +291,7 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
 }
 
 /// Of two pieces of a rod that follow each other and touch the same part next to where they meet, one is enough: that
-/// which carries a force or, if neither does, that whose nearest point is not at its very end. (Both would be as good
+/// on which the nearest point lies or, if neither or both have it, that which carries a force. (Both would be as good
 /// as the same row twice.)
 void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
   constexpr double kSame = 0.1;  // of a piece
@@ -270,8 +300,10 @@ void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
     bool at_end = false;
   };
   const auto place_of = [&start](const ContactState& own) {
-    const contact::Nearest nearest = contact::nearest(start.placed(own.a), start.placed(own.b));
-    const bool first = own.a.on.kind == Kind::rod && own.a.local.corners() == 2;
+    const Simplex a = start.placed(own.a), b = start.placed(own.b);
+    contact::Nearest nearest = contact::nearest(a, b);
+    const bool first = is_piece_of_rod(own.a, a);
+    if (first || is_piece_of_rod(own.b, b)) refine_place(start, own, a, b, nearest);
     const ContactSide& side = first ? own.a : own.b;
     const std::array<double, 3>& weights = first ? nearest.a : nearest.b;
     return Place{abscissa_of(side, weights), side.abscissae[1] - side.abscissae[0],
@@ -281,20 +313,17 @@ void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
     return a.on == b.on && a.nodes == b.nodes && a.abscissae == b.abscissae && a.local.kind == b.local.kind &&
            a.local.x[0] == b.local.x[0] && (a.local.corners() < 2 || a.local.x[1] == b.local.x[1]);
   };
-  const auto piece_of_rod = [](const ContactSide& side) {
-    return side.on.kind == Kind::rod && side.local.corners() == 2;
-  };
   std::vector<bool> dropped(found.size(), false);
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (std::size_t j = i + 1; j < found.size() && found[j].pair == found[i].pair && !dropped[i]; ++j) {
       const ContactState &one = found[i], &other = found[j];
-      const bool on_a = piece_of_rod(one.a) && one.a.on == other.a.on && same_part(one.b, other.b),
-                 on_b = piece_of_rod(one.b) && one.b.on == other.b.on && same_part(one.a, other.a);
+      const bool on_a = is_piece_of_rod(one.a, one.a.local) && one.a.on == other.a.on && same_part(one.b, other.b),
+                 on_b = is_piece_of_rod(one.b, one.b.local) && one.b.on == other.b.on && same_part(one.a, other.a);
       if (dropped[j]) continue;
-      if ((!on_a && !on_b) || (piece_of_rod(one.a) && piece_of_rod(one.b))) continue;
+      if ((!on_a && !on_b) || (is_piece_of_rod(one.a, one.a.local) && is_piece_of_rod(one.b, one.b.local))) continue;
       const Place p = place_of(one), q = place_of(other);
       if (std::abs(p.s - q.s) > kSame * std::min(p.length, q.length)) continue;
-      const bool keep_first = !one.force.isZero(0.0) || (other.force.isZero(0.0) && !p.at_end);
+      const bool keep_first = p.at_end != q.at_end ? q.at_end : !one.force.isZero(0.0) || other.force.isZero(0.0);
       dropped[keep_first ? j : i] = true;
     }
   }
