@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from typing import Any
 
+from . import overlap
 from .scene import Judge, Row, Scene, circle, from_nowhere, shape_of
 
 
@@ -20,7 +21,7 @@ def finger(random_: random.Random, scene: Scene, duration: float) -> None:
                      "young": 10 ** random_.uniform(5, 6.5), "poisson": random_.uniform(0.2, 0.49)},
         "rayleigh": {"mass": 0.1, "stiffness": random_.choice([0.005, 0.02])},
         "fixed": {"box": [[-0.001, -0.008, -0.008], [0.001, 0.008, 0.008]]}}}
-    points = sorted(round(random_.uniform(0.005, 0.085), 4) for _ in range(random_.randint(1, 8)))
+    points = sorted({round(random_.uniform(0.005, 0.085), 4) for _ in range(random_.randint(1, 8))})
     scene["rods"] = {"cable": {
         "path": [[0, 0, 0.002], [0.09, 0, 0.002]], "sections": random_.randint(2, 20),
         "strains": ["torsion", "bending_y", "bending_z"], "section": {"circle": {"radius": 10 ** random_.uniform(-3.7, -3)}},
@@ -81,7 +82,7 @@ def heap(random_: random.Random, scene: Scene, duration: float) -> None:
             "velocity": [random_.gauss(0, 0.2) for _ in range(3)]}
     scene["obstacles"] = {"floor": {"plane": {"normal": [0, 0, 1]}}}
     scene["contact"] = {"friction": random_.choice([0, 0.3, 0.8]), "restitution": random_.choice([0, 0.5])}
-    scene["outputs"] = {"b0": {"body": "b0"}}
+    scene["outputs"] = overlap.outputs(scene)
     if random_.random() < 0.3:
         scene["rods"] = {"r": {
             "path": [[-0.1, 0, 0.04], [0.1, 0, 0.04]], "sections": 6, "base": random_.choice(["free", ["z"]]),
@@ -200,7 +201,7 @@ def legal(random_: random.Random) -> tuple[Scene, Judge]:
     if random_.random() < 0.25 and analysis in ("dynamic", "quasi_static"):
         scene["newton"] = random_.choice([1, 2])
     what(random_, scene, duration)
-    if random_.random() < 0.1 and "solids" in scene and "newton" not in scene:
+    if random_.random() < 0.1 and "solids" in scene and not scene.keys() & {"newton", "contact"}:
         scene["newton"] = {"precision": "single"}
 
     def judge(rows: list[Row], report: Any) -> list[str]:
@@ -214,6 +215,9 @@ def legal(random_: random.Random) -> tuple[Scene, Judge]:
         if deep > 1e-5 and "penetration" not in codes and "overlap_at_start" not in codes:
             told.append(f"overlaps of {1e3 * deep:.3g} mm without a word")
         for row in rows:
+            lies, who = overlap.deepest(scene, row)
+            if lies > 1e-5 + 1.02 * deep and "overlap_at_start" not in codes:
+                told.append(f"{who} by {1e3 * lies:.3g} mm at t = {row['time']:.4g} s, told as {1e3 * deep:.3g} mm")
             for name, value in row.items():
                 if name.endswith((".force", ".tension", ".normal")) and abs(value) > 1e9:
                     told.append(f"{name} is {value:.3g}")
