@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/sim/contact_places.hpp"
+#include "sinew/sim/internal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/sliding_rods.hpp"
+#include "sinew/sim/touched_rods.hpp"
 #include "sinew/sim/work.hpp"
 
 namespace sinew {
@@ -19,12 +21,6 @@ constexpr double kBeyondBearing = 1e6;         ///< times Model::bearing
 constexpr double kLinearisedResidual = 0.05;   ///< of the largest force: of a step of `newton: n`
 constexpr double kLinearisedViolation = 1e-3;  ///< of the scene's size: the same
 constexpr double kLinearisedOff = 0.05;        ///< of the motion: how far it may end beside a converged step
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// Collects the warnings of one step.
 class Warnings {
@@ -54,7 +50,7 @@ void assess_cables(const Model& model, const State& state, Warnings& warnings) {
     if (own.tendon && force < -rounding) {
       warnings.add({.code = "tendon_pushes",
                     .where = "actuators." + own.name,
-                    .message = "the tendon pushes with " + number(-force) + " N; a real one would go slack",
+                    .message = "the tendon pushes with " + three_digits(-force) + " N; a real one would go slack",
                     .remedy = "drive it by `tension`, or draw in more of it",
                     .value = -force,
                     .limit = rounding,
@@ -71,28 +67,28 @@ void assess_cables(const Model& model, const State& state, Warnings& warnings) {
       return point.line == own.line && point.unknown >= 0;
     });
     const double length = rod.rod.length(), radius = rod::radius_at(rod.rod.profile, 0.0);
-    const rod::Mat6 stiffness = rod::stiffness_at(rod.rod.profile, 0.0);
-    const double buckles = M_PI * M_PI * std::min(stiffness(1, 1), stiffness(2, 2)) / (length * length);
-    if (!slides || radius > 0.02 * length || -force < 1e-3 * buckles) continue;
+    const double limit = 1e-3 * buckling_load(rod.rod);
+    if (!slides || radius > 0.02 * length || -force < limit) continue;
     warnings.add({.code = "thread_pushes",
                   .where = "actuators." + own.name,
-                  .message = "rods." + rod.name + " is as thin as a thread and pushes with " + number(-force) +
+                  .message = "rods." + rod.name + " is as thin as a thread and pushes with " + three_digits(-force) +
                              " N; a real one would go slack",
                   .remedy = "pull it, by force instead of displacement if need be",
                   .value = -force,
-                  .limit = 1e-3 * buckles,
+                  .limit = limit,
                   .unit = "N"});
   }
   for (const GeometricCableModel& cable : model.cables) {
     const double tension = state.lambda[cable.length_row];
     if (!(tension < -rounding)) continue;
-    warnings.add({.code = "cable_pushes",
-                  .where = "rods." + cable.name,
-                  .message = "the geometric cable pushes with " + number(-tension) + " N; a real one would go slack",
-                  .remedy = "pull it, by force instead of displacement if need be",
-                  .value = -tension,
-                  .limit = rounding,
-                  .unit = "N"});
+    warnings.add(
+        {.code = "cable_pushes",
+         .where = "rods." + cable.name,
+         .message = "the geometric cable pushes with " + three_digits(-tension) + " N; a real one would go slack",
+         .remedy = "pull it, by force instead of displacement if need be",
+         .value = -tension,
+         .limit = rounding,
+         .unit = "N"});
   }
 }
 
@@ -123,7 +119,7 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
     warnings.add({.code = "penetration",
                   .where = "contact",
                   .message = name_of_pair(model, contact.deepest_pair) + " overlap by " +
-                             number(1e3 * contact.penetration) + " mm",
+                             three_digits(1e3 * contact.penetration) + " mm",
                   .remedy = "take shorter steps" +
                             std::string(bends(contact.deepest_pair) ? ", give the rod more sections" : "") +
                             (fixed ? ", or leave `newton` out" : ""),
@@ -133,13 +129,13 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
   }
   const double left = std::max({contact.left.complementarity, contact.left.cone, contact.left.dissipation});
   if (fixed && contact.unsolved > 0) {
-    warnings.add(
-        {.code = "contact_unsolved",
-         .where = "contact",
-         .message = "forces of contacts miss Signorini's and Coulomb's laws by " + number(left) + " of the largest",
-         .remedy = "take shorter steps, or leave `newton` out",
-         .value = left,
-         .limit = kCoulombTolerance});
+    warnings.add({.code = "contact_unsolved",
+                  .where = "contact",
+                  .message = "forces of contacts miss Signorini's and Coulomb's laws by " + three_digits(left) +
+                             " of the largest",
+                  .remedy = "take shorter steps, or leave `newton` out",
+                  .value = left,
+                  .limit = kCoulombTolerance});
   }
 }
 
@@ -150,17 +146,18 @@ std::string remedy_of_linearisation(const Model& model) {
 
 void assess_linearisation(const Model& model, const StepReport& step, Warnings& warnings) {
   if (step.residual > kLinearisedResidual) {
-    warnings.add({.code = "linearisation_off",
-                  .where = "newton",
-                  .message = "the step leaves " + number(100.0 * step.residual) + " % of the largest force unbalanced",
-                  .remedy = remedy_of_linearisation(model),
-                  .value = step.residual,
-                  .limit = kLinearisedResidual});
+    warnings.add(
+        {.code = "linearisation_off",
+         .where = "newton",
+         .message = "the step leaves " + three_digits(100.0 * step.residual) + " % of the largest force unbalanced",
+         .remedy = remedy_of_linearisation(model),
+         .value = step.residual,
+         .limit = kLinearisedResidual});
   }
   if (step.violation > kLinearisedViolation * model.size) {
     warnings.add({.code = "constraints_off",
                   .where = "newton",
-                  .message = "constraints are missed by " + number(1e3 * step.violation) + " mm",
+                  .message = "constraints are missed by " + three_digits(1e3 * step.violation) + " mm",
                   .remedy = remedy_of_linearisation(model),
                   .value = step.violation,
                   .limit = kLinearisedViolation * model.size,
@@ -200,6 +197,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   if (fixed) assess_linearisation(model, report, warnings);
   assess_redundancy(model, here, warnings);
   for (Warning& own : assess_sliding_rods(model, next)) warnings.add(std::move(own));
+  for (Warning& own : assess_touched_rods(model, next)) warnings.add(std::move(own));
   if (report.unstable) {
     warnings.add({.code = "unstable",
                   .where = "",
@@ -227,7 +225,7 @@ void warn_of_linearisation(const Model& model, double time, StepReport& report) 
   Warnings(time, report.warnings)
       .add({.code = "linearised_step_off",
             .where = "newton",
-            .message = "the last linearised step is " + number(100.0 * report.off) +
+            .message = "the last linearised step is " + three_digits(100.0 * report.off) +
                        " % off: so far beside it, as a part of the way from the start, ends a converged one",
             .remedy = remedy_of_linearisation(model),
             .value = report.off,
@@ -239,7 +237,7 @@ std::string beyond_bearing(const Model& model, const State& state) {
   const double limit = kBeyondBearing * model.bearing;
   for (const ContactState& contact : state.contacts) {
     if (contact.force.norm() > limit) {
-      return name_of_pair(model, contact.pair) + " press with " + number(contact.force.norm()) +
+      return name_of_pair(model, contact.pair) + " press with " + three_digits(contact.force.norm()) +
              " N, more than anything here could bear: no strain and no motion answers";
     }
   }
@@ -248,7 +246,7 @@ std::string beyond_bearing(const Model& model, const State& state) {
   for (Eigen::Index row = 0; row < state.lambda.size(); ++row) {
     if (std::abs(state.lambda[row]) > limit) rows.push_back(static_cast<int>(row));
   }
-  return name_of_rows(model, rows) + ": forces of " + number(state.lambda.cwiseAbs().maxCoeff()) +
+  return name_of_rows(model, rows) + ": forces of " + three_digits(state.lambda.cwiseAbs().maxCoeff()) +
          " N, more than anything here could bear; " + remedy_of_rows(model, rows);
 }
 
@@ -303,13 +301,14 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
   if (!(gain > kGain * size + work_uncertainty(context, next)) || !(size > 1e-14 * model.bearing * model.size))
     return {};
-  return "contacts have added " + number(gain) + " J, " + number(gain / size) + " of the kinetic and elastic energy";
+  return "contacts have added " + three_digits(gain) + " J, " + three_digits(gain / size) +
+         " of the kinetic and elastic energy";
 }
 
 std::string describe_contradiction(const Model& model, const RedundantRows& rows, const Eigen::VectorXd& c) {
   const std::vector<int> which = rows.contradicting(c);
-  return name_of_rows(model, which) + " contradict each other by " + number(1e3 * rows.contradiction(c)) + " mm; " +
-         remedy_of_rows(model, which);
+  return name_of_rows(model, which) + " contradict each other by " + three_digits(1e3 * rows.contradiction(c)) +
+         " mm; " + remedy_of_rows(model, which);
 }
 
 }  // namespace sinew

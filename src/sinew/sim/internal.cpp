@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace sinew {
 
@@ -74,6 +76,11 @@ double tautness(const Model& model, const State& state, int number) {
     }
   }
   return most;
+}
+
+double buckling_load(const rod::Rod& rod) {
+  const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, 0.0);
+  return std::pow(std::numbers::pi / rod.length(), 2) * std::min(stiffness(1, 1), stiffness(2, 2));
 }
 
 rod::SectionStress section_stress(const Model& model, const State& state, int number, double s) {

@@ -21,6 +21,9 @@ rod::Vec6 internal_wrench(const Model& model, const State& state, int number, do
 /// cannot bend.
 double tautness(const Model& model, const State& state, int number);
 
+/// [N] under which it buckles as a column with both ends hinged, about the axis that bends more easily.
+double buckling_load(const rod::Rod& rod);
+
 /// The largest stresses of the cross-section at s.
 rod::SectionStress section_stress(const Model& model, const State& state, int number, double s);
 

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/sim/internal.hpp"
 
 namespace sinew {
@@ -17,12 +16,6 @@ constexpr double kHeldByPairs =
 constexpr double kNothing = 1e-4;  ///< of the rod's buckling load: nothing to speak of
 constexpr double kRubs = 0.05;     ///< of the force at the base: less friction does not matter
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 const rod::Section& section_at(const rod::Rod& rod, double s) {
   return *std::find_if(rod.sections.begin(), rod.sections.end() - 1,
                        [s](const rod::Section& own) { return s <= own.end; });
@@ -34,12 +27,6 @@ int bending_order(const rod::Section& section) {
     if (mode.strain == 1 || mode.strain == 2) order = std::max(order, mode.degree);
   }
   return order;
-}
-
-/// As a column with both ends hinged [N], along the axis that bends more easily.
-double buckling_load(const rod::Rod& rod) {
-  const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, 0.0);
-  return std::pow(std::numbers::pi / rod.length(), 2) * std::min(stiffness(1, 1), stiffness(2, 2));
 }
 
 /// Elastic energy of bending per length [N].
@@ -122,9 +109,9 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
       warnings.push_back(
           {.code = "sliding_force_ripples",
            .where = "rods." + model.rods[facts.rod].name,
-           .message = "the rod bends where it slides, and with " + number(facts.sections) + " sections of order " +
-                      std::to_string(facts.order) + " between two points the force along it swings by about " +
-                      number(swing) + " N",
+           .message = "the rod bends where it slides, and with " + three_digits(facts.sections) +
+                      " sections of order " + std::to_string(facts.order) +
+                      " between two points the force along it swings by about " + three_digits(swing) + " N",
            .remedy = "take four sections between two points at order 0, two at order 1 or one at order 2",
            .value = swing / base,
            .limit = kRipple});
@@ -134,7 +121,7 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
                           .where = "couplings." + std::to_string(i),
                           .message = "neighbouring points hold the rod's bending stiffness by forces against each "
                                      "other, and the friction of these grows as 1 / spacing (" +
-                                     number(1e3 * facts.spacing) + " mm)",
+                                     three_digits(1e3 * facts.spacing) + " mm)",
                           .remedy = "give points no closer than the channel's clearance holds the rod, or a rod that "
                                     "bends more easily",
                           .value = against / pressed,
