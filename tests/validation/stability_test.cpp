@@ -83,6 +83,34 @@ TEST(Stability, OfAFollowerLoadIsNotKnown) {
   }
 }
 
+// A round rod that may spin about its axis rests as well at any turn: its verdict was chance, the sign of rounding.
+TEST(Stability, OfARodThatSpinsFreelyIsNotChance) {
+  for (const bool spins : {false, true}) {
+    Scene scene = test::lone_rod();
+    scene.analysis = Analysis::quasi_static;
+    scene.time = {0.1, 1.0};
+    scene.gravity = Vec3(0, 0, -9.81);
+    Rod& rod = scene.rods[0].second;
+    rod.strains = {Strain::torsion, Strain::bending_y, Strain::bending_z};
+    if (spins) rod.base = {BaseAxis::turn_x};
+    RodLoad swings;
+    swings.rod = "rod";
+    swings.force = Vec3(0, 0, -0.1);
+    swings.factor = Table{{0.0, 1.0}, {0.0, 1.0}};
+    scene.loads.emplace_back("swings", swings);
+    const Model model = build(scene, test::read_block);
+    Workspace workspace(model);
+    State state = initial_state(model);
+    for (int i = 0; i < 10; ++i) {
+      const StepReport report = advance(model, workspace, state);
+      ASSERT_TRUE(accepted(report.status)) << report.detail;
+      EXPECT_TRUE(report.stability_known);
+      EXPECT_FALSE(report.unstable) << "spins " << spins << ", step " << i;
+      EXPECT_EQ(find_warning(report.warnings, "free_motion", "rods.rod") != nullptr, spins) << "step " << i;
+    }
+  }
+}
+
 TEST(Stability, IsToldAsNaturalFrequenciesSay) { look_at(60, 1); }
 TEST(Stability, IsToldAsNaturalFrequenciesSayManyTimes_slow) { look_at(300, 2); }
 

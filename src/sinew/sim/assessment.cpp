@@ -185,6 +185,25 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
   }
 }
 
+/// Bases of rods that an equilibrium leaves free: they stand where they came by chance.
+void assess_free(const Model& model, const Linearization& here, Warnings& warnings) {
+  constexpr const char* kAxes = "xyz";
+  for (const RodModel& rod : model.rods) {
+    std::string motions;
+    for (int k = 0; k < rod.rod.base_coordinates(); ++k) {
+      if (std::find(here.unresisted().begin(), here.unresisted().end(), rod.unknown + k) == here.unresisted().end())
+        continue;
+      const rod::BaseMotion& motion = rod.rod.base[k];
+      motions += std::string(motions.empty() ? "" : ", ") + (motion.turns ? "turn_" : "") + kAxes[motion.axis];
+    }
+    if (motions.empty()) continue;
+    warnings.add({.code = "free_motion",
+                  .where = "rods." + rod.name,
+                  .message = "nothing resists a motion of its base (" + motions + "): where it rests is chance",
+                  .remedy = "leave that out of its `base`, or hold it by a tie that has this axis"});
+  }
+}
+
 }  // namespace
 
 void assess(const StepContext& context, const Linearization& here, const State& next, StepReport& report) {
@@ -198,6 +217,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   assess_redundancy(model, here, warnings);
   for (Warning& own : assess_sliding_rods(model, next)) warnings.add(std::move(own));
   for (Warning& own : assess_touched_rods(model, next)) warnings.add(std::move(own));
+  if (context.rate == 0.0 && report.stability_known) assess_free(model, here, warnings);
   if (report.unstable) {
     warnings.add({.code = "unstable",
                   .where = "",

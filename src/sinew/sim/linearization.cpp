@@ -159,7 +159,7 @@ bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& fail
   if (!solids_factored(failed)) return false;
   factor_border();
   if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) return true;
-  if (conservative() && negative_ + factor_.negative() <= context_->model.rows) return true;
+  if (conservative() && negative_ + factor_.inertia().negative <= context_->model.rows) return true;
   rotated_ = true;
   beside([&](std::size_t i, StageTimes& own) { factor_solid(i, solid::Tangent::definite, own); }, [](StageTimes&) {});
   if (!solids_factored(failed)) return false;
@@ -223,8 +223,12 @@ bool Linearization::conservative() const {
 
 bool Linearization::stability_known() const { return !rotated_ && coupled_ && conservative(); }
 
-bool Linearization::unstable() const {
-  return stability_known() && negative_ + factor_.negative() > context_->model.rows;
+bool Linearization::unstable() {
+  unresisted_.clear();
+  if (!stability_known()) return false;
+  solve::Inertia border = factor_.inertia();
+  unresisted_ = std::move(border.free);
+  return negative_ + border.negative > context_->model.rows;
 }
 
 void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer,

@@ -72,7 +72,9 @@ class Linearization {
   /// exact one.
   bool stability_known() const;
   /// The tangent has more negative eigenvalues than there are rows. False where that is not known.
-  bool unstable() const;
+  bool unstable();
+  /// Numbers of unknowns z that nothing resists, where `unstable` has looked.
+  const std::vector<int>& unresisted() const { return unresisted_; }
   /// What was last solved in single precision could not be refined to what double precision gives.
   bool stalled() const { return stalled_; }
   double stiffness() const { return stiffness_; }  ///< [N/m] largest diagonal entry of the volumes' matrices
@@ -151,6 +153,7 @@ class Linearization {
   std::optional<solid::Tangent> ahead_;  ///< volumes and chains are factored, with this one
   bool rotated_ = false, coupled_ = false, stalled_ = false;
   int negative_ = 0;  ///< eigenvalues of the volumes' tangents
+  std::vector<int> unresisted_;
   enum class Factored { failed, as_told, definite };
   std::vector<Factored> factored_;  ///< each volume
   std::vector<FreeMotion> free_;

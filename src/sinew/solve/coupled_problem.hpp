@@ -65,6 +65,9 @@ struct CoupledProblem {
   std::vector<VolumePart> volumes;  ///< W: the sum of theirs ...
   Entries W;                        ///< ... and of these
   Eigen::VectorXd r, c;             ///< as long as z and lambda
+  /// Per z a stiffness [N/m], [N m] of which 1e-10 counts as none, 0 where there is no such; or empty. It tells motions
+  /// that nothing resists from those that little resists, where all that is left of their own is rounding.
+  Eigen::VectorXd reference;
   std::vector<ChainPart> chains;
 };
 

@@ -234,7 +234,10 @@ void CoupledFactor::weigh() {
     scale_.array() /= largest_.array().sqrt();
   }
   std::fill_n(least_.begin(), order_.yielding(), -kVanished * most);
-  for (int i = 0; i < nz; ++i) least_[place[i]] = kVanished / (scale_[i] * scale_[i]);
+  for (int i = 0; i < nz; ++i) {
+    least_[place[i]] = kVanished / (scale_[i] * scale_[i]);
+    if (problem.reference.size() > 0) least_[place[i]] = std::max(least_[place[i]], kVanished * problem.reference[i]);
+  }
 }
 
 bool CoupledFactor::factor_symmetric() {
@@ -527,30 +530,55 @@ void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {
   }
 }
 
-int CoupledFactor::negative() const {
-  int count = 0;
-  if (!joined_) {
-    for (const linalg::ChainFactor& factor : factors_) count += factor.negative();
+Inertia CoupledFactor::inertia() const {
+  Inertia whole;
+  if (kind_ == Kind::symmetric) {
+    if (replaced_)
+      whole = inertia_of_border();
+    else
+      whole.negative = symmetric_.negative();
+  } else if (K_.rows() > 0 && K_.allFinite()) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
+    whole.negative = static_cast<int>((border.eigenvalues().array() < 0.0).count());
   }
-  if (kind_ == Kind::symmetric) return count + (replaced_ ? negative_of_border() : symmetric_.negative());
-  if (K_.rows() == 0 || !K_.allFinite()) return count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
-  return count + static_cast<int>((border.eigenvalues().array() < 0.0).count());
+  if (!joined_) {
+    for (const linalg::ChainFactor& factor : factors_) whole.negative += factor.negative();
+  }
+  return whole;
 }
 
 /// By its eigenvalues, scaled: those that are zero but for rounding belong to motions that nothing resists, and count
 /// as none.
-int CoupledFactor::negative_of_border() const {
+Inertia CoupledFactor::inertia_of_border() const {
   constexpr int kLargest = 600;  // beyond that it takes seconds, and the factor's pivots have to do
   constexpr double kZero = 1e-12;
+  constexpr double kTakesPart = 0.1;  // of the largest part of a motion
   const int size = border_size(*problem_);
-  if (size > kLargest) return symmetric_.negative();
+  Inertia border{symmetric_.negative(), {}};
+  if (size > kLargest) return border;
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
-  Dense border(K);
-  fill(border);
-  equilibrate(K);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(K, Eigen::EigenvaluesOnly);
-  return static_cast<int>((own.eigenvalues().array() < -kZero).count());
+  Dense whole(K);
+  fill(whole);
+  const Eigen::VectorXd scale = equilibrate(K);
+  for (Eigen::Index i = 0; i < problem_->reference.size(); ++i) {
+    // What is left of it may be rounding, which must not be made larger.
+    const double more = scale[i] * std::sqrt(kVanished / kZero * problem_->reference[i]);
+    if (!(more > 1.0)) continue;
+    K.row(i) /= more;
+    K.col(i) /= more;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(K, Eigen::EigenvaluesOnly);
+  border.negative = static_cast<int>((solved.eigenvalues().array() < -kZero).count());
+  if (problem_->reference.size() == 0 || !(solved.eigenvalues().cwiseAbs().minCoeff() <= kZero)) return border;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> motions(K);
+  for (int i = 0; i < size; ++i) {
+    if (std::abs(motions.eigenvalues()[i]) > kZero) continue;
+    const Eigen::VectorXd motion = motions.eigenvectors().col(i).cwiseAbs();
+    for (int k = 0; k < unknowns_of(*problem_); ++k) {
+      if (motion[k] > kTakesPart * motion.maxCoeff()) border.free.push_back(k);
+    }
+  }
+  return border;
 }
 
 CoupledSolution solve_direct(const CoupledProblem& problem) {
