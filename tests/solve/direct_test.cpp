@@ -81,6 +81,33 @@ TEST(Direct, repeated_rows_that_agree_are_survived) {
   EXPECT_NEAR(solution.dlambda[1], solution.dlambda[2], 1e-7 * solution.dlambda.norm());  // the load is shared
 }
 
+// Of two unknowns that nothing couples to the rest, one has a little stiffness and one only rounding of either sign.
+TEST(Direct, what_nothing_resists_counts_as_no_negative_eigenvalue) {
+  for (const double rounding : {-1e-19, 0.0, 1e-19}) {
+    for (const double little : {-1e-9, 1e-9}) {
+      CoupledProblem p = problem(7, 3);
+      Eigen::MatrixXd B = B_of(p), G = G_of(p);
+      for (const int i : {2, 5}) {
+        B.row(i).setZero();
+        B.col(i).setZero();
+        G.col(i).setZero();
+      }
+      B(2, 2) = rounding;
+      B(5, 5) = little;
+      put(p.B, B);
+      put(p.G, G);
+      p.reference.setZero(7);
+      p.reference[2] = p.reference[5] = 1e-3;
+      CoupledFactor factor;
+      factor.eliminate_chains(p);
+      factor.factor();
+      const MatrixInertia inertia = factor.inertia();
+      EXPECT_EQ(inertia.negative, 3 + (little < 0.0)) << rounding << ' ' << little;
+      EXPECT_EQ(inertia.null_unknowns, std::vector<int>{2}) << rounding << ' ' << little;
+    }
+  }
+}
+
 TEST(Direct, contradicting_rows_are_refused) {
   CoupledProblem p = problem(7, 3);
   p.volumes.clear();

@@ -111,6 +111,30 @@ TEST(Stability, OfARodThatSpinsFreelyIsNotChance) {
   }
 }
 
+// A stiff pin on a hinge: its weight resists little beside its bending stiffness, 5e-8 of it, and decides all the same.
+TEST(Stability, OfAPinOnAHingeIsThatOfAPendulum) {
+  for (const double up : {-1.0, 1.0}) {
+    Scene scene = test::lone_rod(7800.0, 2);
+    scene.analysis = Analysis::quasi_static;
+    scene.time = {0.5, 1.0};
+    scene.gravity = Vec3(0, 0, -9.81);
+    Rod& pin = scene.rods[0].second;
+    pin.path = {Vec3::Zero(), Vec3(0, 0, up * 0.01)};
+    pin.base = {BaseAxis::turn_y};
+    pin.section = Circle{4e-3};
+    pin.material.young = 2e11;
+    scene.outputs.clear();
+    const Model model = build(scene, test::read_block);
+    Workspace workspace(model);
+    State state = initial_state(model);
+    const StepReport report = advance(model, workspace, state);
+    ASSERT_TRUE(accepted(report.status)) << report.detail;
+    EXPECT_TRUE(report.stability_known);
+    EXPECT_EQ(report.unstable, up > 0.0);
+    EXPECT_EQ(find_warning(report.warnings, "free_motion"), nullptr);
+  }
+}
+
 TEST(Stability, IsToldAsNaturalFrequenciesSay) { look_at(60, 1); }
 TEST(Stability, IsToldAsNaturalFrequenciesSayManyTimes_slow) { look_at(300, 2); }
 

@@ -185,14 +185,17 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
   }
 }
 
-/// Bases of rods that an equilibrium leaves free: they stand where they came by chance.
-void assess_free(const Model& model, const Linearization& here, Warnings& warnings) {
+/// Bases of rods that an equilibrium leaves free: they stand where they came by chance. (Those that contacts press on
+/// may be held by these.)
+void assess_free(const Model& model, const Linearization& here, const State& state, Warnings& warnings) {
   constexpr const char* kAxes = "xyz";
-  for (const RodModel& rod : model.rods) {
+  const std::vector<int>& unresisted = here.unresisted();
+  for (int i = 0; i < static_cast<int>(model.rods.size()) && !unresisted.empty(); ++i) {
+    const RodModel& rod = model.rods[i];
+    if (is_pressed(state, {Collider::Kind::rod, i})) continue;
     std::string motions;
     for (int k = 0; k < rod.rod.base_coordinates(); ++k) {
-      if (std::find(here.unresisted().begin(), here.unresisted().end(), rod.unknown + k) == here.unresisted().end())
-        continue;
+      if (std::find(unresisted.begin(), unresisted.end(), rod.unknown + k) == unresisted.end()) continue;
       const rod::BaseMotion& motion = rod.rod.base[k];
       motions += std::string(motions.empty() ? "" : ", ") + (motion.turns ? "turn_" : "") + kAxes[motion.axis];
     }
@@ -217,7 +220,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   assess_redundancy(model, here, warnings);
   for (Warning& own : assess_sliding_rods(model, next)) warnings.add(std::move(own));
   for (Warning& own : assess_touched_rods(model, next)) warnings.add(std::move(own));
-  if (context.rate == 0.0 && report.stability_known) assess_free(model, here, warnings);
+  if (report.stability_known) assess_free(model, here, next, warnings);
   if (report.unstable) {
     warnings.add({.code = "unstable",
                   .where = "",
@@ -285,16 +288,10 @@ Loose loose_energy(const Model& model, const State& state) {
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const rod::Rod& rod = model.rods[i].rod;
-    const std::vector<rod::MassPoint>& masses = rod.masses;
-    for (int k = 0; k < rod.count(); ++k) {
-      const auto q = rod.of_section(state.rods[i].q, k);
-      own.elastic += 0.5 * q.dot(rod.sections[static_cast<std::size_t>(k)].stiffness * q);
-    }
-    for (std::size_t m = 0; m < masses.size(); ++m) {
-      const auto column = static_cast<Eigen::Index>(m);
-      own.kinetic += 0.5 * masses[m].mass * state.rods[i].velocity.col(column).squaredNorm();
-      own.weight -= masses[m].mass * g.dot(state.rods[i].masses.col(column));
-    }
+    own.elastic += elastic_energy(rod, state.rods[i]);
+    own.kinetic += kinetic_energy(rod, state.rods[i]);
+    for (std::size_t m = 0; m < rod.masses.size(); ++m)
+      own.weight -= rod.masses[m].mass * g.dot(state.rods[i].masses.col(static_cast<Eigen::Index>(m)));
   }
   return own;
 }

@@ -150,29 +150,30 @@ bool is_piece_of_rod(const ContactSide& side, const Simplex& placed) {
   return side.on.kind == Kind::rod && placed.corners() == 2;
 }
 
-/// The second weights that a contact of a line may have: a rod goes on beyond its piece, an edge ends.
-struct Reach {
+/// The second weights that a contact of a line may have: a rod goes on beyond its piece, up to its ends; an edge ends.
+struct WeightRange {
   double from = 0.0, to = 1.0;
   bool has(double weight) const { return weight >= from && weight <= to; }
 };
-Reach reach_of(const Moment& now, const ContactSide& side, const Simplex& placed) {
+WeightRange weight_range(const Moment& now, const ContactSide& side, const Simplex& placed) {
   constexpr double kBeyond = 0.5;  // of the piece: further away another one touches
   if (!is_piece_of_rod(side, placed)) return {};
-  const bool first = side.abscissae[0] <= 0.0, last = side.abscissae[1] >= now.rods[side.on.number].rod->length();
-  return {first ? 0.0 : -kBeyond, last ? 1.0 : 1.0 + kBeyond};
+  const double begin = side.abscissae[0], length = side.abscissae[1] - begin;
+  return {std::max(-kBeyond, -begin / length),
+          std::min(1.0 + kBeyond, (now.rods[side.on.number].rod->length() - begin) / length)};
 }
 
-/// Where two parts are nearest within these reaches, one of them a piece of a rod, from where their chords are: Gauss
+/// Where two parts are nearest within these ranges, one of them a piece of a rod, from where their chords are: Gauss
 /// and Newton's method for min |x_a - x_b|^2. False where a rod lies along a drum of about its own curvature and is
 /// equally near all along.
 bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
-                       const Reach& reach_a, const Reach& reach_b, contact::Nearest& found) {
+                       const WeightRange& range_a, const WeightRange& range_b, contact::Nearest& found) {
   constexpr double kLiesAlong = 0.3;  // of the distance of the axes times the curvature
   constexpr int kMostIterations = 10;
   std::array<double, 3>&s = found.a, &t = found.b;
-  const auto move = [](std::array<double, 3>& weights, const Reach& reach, double by) {
+  const auto move = [](std::array<double, 3>& weights, const WeightRange& range, double by) {
     const double before = weights[1];
-    weights[1] = std::clamp(before + by, reach.from, reach.to);
+    weights[1] = std::clamp(before + by, range.from, range.to);
     weights[0] = 1.0 - weights[1];
     return weights[1] - before;
   };
@@ -184,33 +185,35 @@ bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex
                  determinant = aa * bb - ab * ab;
     double moved = 0.0;
     if (determinant > 1e-3 * aa * bb) {
-      moved = std::abs(move(s, reach_a, -(bb * fa + ab * fb) / determinant)) +
-              std::abs(move(t, reach_b, -(aa * fb + ab * fa) / determinant));
+      moved = std::abs(move(s, range_a, -(bb * fa + ab * fb) / determinant)) +
+              std::abs(move(t, range_b, -(aa * fb + ab * fa) / determinant));
     } else if (aa > 0.0) {
-      moved = std::abs(move(s, reach_a, -fa / aa));
+      moved = std::abs(move(s, range_a, -fa / aa));
     } else if (bb > 0.0) {
-      moved = std::abs(move(t, reach_b, -fb / bb));
+      moved = std::abs(move(t, range_b, -fb / bb));
     }
     if (moved < 1e-14) break;
   }
   return true;
 }
 
-/// Brings the places of a contact from the chords to the curves of rods, also where these go on beyond its pieces, as
-/// far as it reaches. One that then comes to the end of its reach, or of the other part, leaves that to the contacts of
-/// what is there and stays on its pieces; places on chords, which are unique, stay where a rod lies along.
+/// Brings the places of a contact from the chords to the curves of rods, also where these go on beyond its pieces. A
+/// place that then comes to the end of its range or of the other part is not the nearest, which another contact has: it
+/// stays on its pieces. Where a rod lies along, the places on chords stay, which are unique.
 void refine_place(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                   contact::Nearest& found) {
-  const Reach reach_a = reach_of(now, own.a, a), reach_b = reach_of(now, own.b, b);
-  const auto leaves = [](const Simplex& placed, const Reach& reach, double chord, double weight) {
-    const bool on_chord =
-        chord > 0.0 && chord<1.0, on = weight> 0.0 && weight<1.0, inside = weight> reach.from && weight < reach.to;
-    const bool goes_on = reach.from < 0.0 || reach.to > 1.0;
-    return placed.corners() == 2 && (goes_on ? !on && !inside : on_chord && !on);
+  const auto leaves = [&now](const ContactSide& side, const Simplex& placed, double on_chord, double weight) {
+    if (placed.corners() != 2) return false;
+    const auto inside = [](double value, double from, double to) { return from < value && value < to; };
+    const bool within_piece = inside(weight, 0.0, 1.0);
+    if (!is_piece_of_rod(side, placed)) return inside(on_chord, 0.0, 1.0) && !within_piece;
+    const WeightRange range = weight_range(now, side, placed);
+    return !within_piece && !inside(weight, range.from, range.to);
   };
   const contact::Nearest on_chords = found;
-  if (nearest_on_curves(now, own, a, b, reach_a, reach_b, found) && !leaves(a, reach_a, on_chords.a[1], found.a[1]) &&
-      !leaves(b, reach_b, on_chords.b[1], found.b[1]))
+  const bool one_place =
+      nearest_on_curves(now, own, a, b, weight_range(now, own.a, a), weight_range(now, own.b, b), found);
+  if (one_place && !leaves(own.a, a, on_chords.a[1], found.a[1]) && !leaves(own.b, b, on_chords.b[1], found.b[1]))
     return;
   found = on_chords;
   if (!nearest_on_curves(now, own, a, b, {}, {}, found)) found = on_chords;
@@ -282,8 +285,8 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
     }
   }
   // The tangent stands for the curve near its point alone, and edges and rods end: a foot beyond that is none.
-  if (!reach_of(now, own.a, a).has(found.a[1] + t.dot(feet.a - first.x) / std::max(first.speed, 1e-300)) ||
-      !reach_of(now, own.b, b).has(found.b[1] + u.dot(feet.b - second.x) / std::max(second.speed, 1e-300)))
+  if (!weight_range(now, own.a, a).has(found.a[1] + t.dot(feet.a - first.x) / std::max(first.speed, 1e-300)) ||
+      !weight_range(now, own.b, b).has(found.b[1] + u.dot(feet.b - second.x) / std::max(second.speed, 1e-300)))
     return {first.x, second.x};
   found.normal = n;
   found.gap = n.dot(feet.a - feet.b) - a.radius - b.radius;
@@ -325,6 +328,11 @@ void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
       if (std::abs(p.s - q.s) > kSame * std::min(p.length, q.length)) continue;
       const bool keep_first = p.at_end != q.at_end ? q.at_end : !one.force.isZero(0.0) || other.force.isZero(0.0);
       dropped[keep_first ? j : i] = true;
+      ContactState &kept = found[keep_first ? i : j], &gone = found[keep_first ? j : i];
+      if (kept.force.isZero(0.0)) {  // the contact goes on from one piece to the next, with its force
+        kept.force = gone.force;
+        kept.normal = gone.normal;
+      }
     }
   }
   std::size_t kept = 0;

@@ -78,6 +78,22 @@ double tautness(const Model& model, const State& state, int number) {
   return most;
 }
 
+double elastic_energy(const rod::Rod& rod, const RodState& state) {
+  double energy = 0.0;
+  for (int k = 0; k < rod.count(); ++k) {
+    const auto q = rod.of_section(state.q, k);
+    energy += 0.5 * q.dot(rod.sections[static_cast<std::size_t>(k)].stiffness * q);
+  }
+  return energy;
+}
+
+double kinetic_energy(const rod::Rod& rod, const RodState& state) {
+  double energy = 0.0;
+  for (std::size_t m = 0; m < rod.masses.size(); ++m)
+    energy += 0.5 * rod.masses[m].mass * state.velocity.col(static_cast<Eigen::Index>(m)).squaredNorm();
+  return energy;
+}
+
 double buckling_load(const rod::Rod& rod) {
   const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, 0.0);
   return std::pow(std::numbers::pi / rod.length(), 2) * std::min(stiffness(1, 1), stiffness(2, 2));

@@ -21,8 +21,14 @@ rod::Vec6 internal_wrench(const Model& model, const State& state, int number, do
 /// cannot bend.
 double tautness(const Model& model, const State& state, int number);
 
+/// [J] Of a rod alone: what its strains store, and its motion.
+double elastic_energy(const rod::Rod& rod, const RodState& state);
+double kinetic_energy(const rod::Rod& rod, const RodState& state);
+
 /// [N] under which it buckles as a column with both ends hinged, about the axis that bends more easily.
 double buckling_load(const rod::Rod& rod);
+/// Part of it: less force than that is nothing to speak of.
+inline constexpr double kNegligibleForce = 1e-4;
 
 /// The largest stresses of the cross-section at s.
 rod::SectionStress section_stress(const Model& model, const State& state, int number, double s);

@@ -83,6 +83,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
     largest_ = std::max(largest_, own.largest);
     scale_ = std::max(scale_, own.scale);
   }
+  set_references(context, scale_, reduced_);
 }
 
 rod::Configuration& Linearization::shape(int rod) {
@@ -226,8 +227,8 @@ bool Linearization::stability_known() const { return !rotated_ && coupled_ && co
 bool Linearization::unstable() {
   unresisted_.clear();
   if (!stability_known()) return false;
-  solve::Inertia border = factor_.inertia();
-  unresisted_ = std::move(border.free);
+  solve::MatrixInertia border = factor_.inertia();
+  unresisted_ = std::move(border.null_unknowns);
   return negative_ + border.negative > context_->model.rows;
 }
 

@@ -1,5 +1,7 @@
 #include "sinew/sim/places.hpp"
 
+#include <algorithm>
+
 #include "sinew/solid/corotational.hpp"
 
 namespace sinew {
@@ -46,6 +48,12 @@ Pressing pressing_of(const State& state, int pair) {
     own.gap = std::min(own.gap, contact.gap);
   }
   return own;
+}
+
+bool is_pressed(const State& state, const Collider& object) {
+  return std::any_of(state.contacts.begin(), state.contacts.end(), [&object](const ContactState& contact) {
+    return !contact.force.isZero(0.0) && (contact.a.on == object || contact.b.on == object);
+  });
 }
 
 int count_folded(const Model& model, const State& state) {

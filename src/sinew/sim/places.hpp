@@ -38,6 +38,9 @@ struct Pressing {
 };
 Pressing pressing_of(const State& state, int pair);
 
+/// Whether a contact presses on an object.
+bool is_pressed(const State& state, const Collider& object);
+
 /// How many cells of solids are flat or inside out.
 int count_folded(const Model& model, const State& state);
 

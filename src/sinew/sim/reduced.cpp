@@ -209,21 +209,6 @@ void hold_followed(const Model& model, const State& iterate, int row, int unknow
   reduced.violation = std::max(reduced.violation, gap.norm());
 }
 
-/// Of an equilibrium, for bases of rods: the bending stiffness E I / L against turns and E I / L^3 against
-/// displacements.
-void add_references(const StepContext& context, Reduced& reduced) {
-  const Model& model = context.model;
-  Eigen::VectorXd& reference = reduced.problem.reference;
-  reference.setZero(context.rate == 0.0 ? model.unknowns : 0);
-  for (std::size_t i = 0; context.rate == 0.0 && i < model.rods.size(); ++i) {
-    const rod::Rod& rod = model.rods[i].rod;
-    const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, 0.0);
-    const double length = rod.length(), turns = 1e3 * std::max(stiffness(1, 1), stiffness(2, 2)) / length;
-    for (int k = 0; k < rod.base_coordinates(); ++k)
-      reference[model.rods[i].unknown + k] = rod.base[k].turns ? turns : turns / (length * length);
-  }
-}
-
 void linearize(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced) {
   const Model& model = context.model;
   solve::CoupledProblem& problem = reduced.problem;
@@ -232,7 +217,6 @@ void linearize(const StepContext& context, const State& iterate, const std::vect
   problem.W.clear();
   problem.r.setZero(model.unknowns);
   problem.c.setZero(model.rows);
-  add_references(context, reduced);
   problem.chains.resize(model.rods.size());
   reduced.internal.resize(model.rods.size());
   reduced.rods.resize(model.rods.size());
@@ -252,6 +236,22 @@ void linearize(const StepContext& context, const State& iterate, const std::vect
   add_carried(context, iterate, reduced);
   if (model.unknowns > 0)
     reduced.largest = std::max(reduced.largest, (problem.r.array() / model.arms.array()).abs().maxCoeff());
+}
+
+void set_references(const StepContext& context, double force, Reduced& reduced) {
+  constexpr double kOfTolerance = 10.0, kOfBending = 1e-12, kCountsAsNone = 1e-10;
+  const Model& model = context.model;
+  Eigen::VectorXd& reference = reduced.problem.reference;
+  reference.setZero(context.rate == 0.0 ? model.unknowns : 0);
+  if (context.rate > 0.0) return;
+  const double unbalanced = kOfTolerance * model.scene.newton.tolerance * force;
+  for (const RodModel& own : model.rods) {
+    const rod::Mat6 stiffness = rod::stiffness_at(own.rod.profile, 0.0);
+    const double length = own.rod.length(), bending = std::max(stiffness(1, 1), stiffness(2, 2)) / length,
+                 turns = std::max(unbalanced * length, kOfBending * bending) / kCountsAsNone;
+    for (int k = 0; k < own.rod.base_coordinates(); ++k)
+      reference[own.unknown + k] = own.rod.base[k].turns ? turns : turns / (length * length);
+  }
 }
 
 void clear(const Model& model, solve::RightSide& side) {

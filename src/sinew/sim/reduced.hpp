@@ -39,6 +39,11 @@ struct Reduced {
 /// Memory of an earlier one is used again.
 void linearize(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, Reduced& reduced);
 
+/// CoupledProblem::reference of an equilibrium, for bases of rods. Where forces as large as `force` [N] are balanced to
+/// Newton's tolerance, stiffnesses are known no better: against turns ten times tolerance x force x length L counts as
+/// none, or 1e-12 E I / L if that is more; against displacements the same over L^2.
+void set_references(const StepContext& context, double force, Reduced& reduced);
+
 /// Three rows, from `row`, that hold what a tie follows, three unknowns z from `unknown`, to where it is: c = is - z.
 void hold_followed(const Model& model, const State& iterate, int row, int unknown, const Vec3& is, Reduced& reduced);
 

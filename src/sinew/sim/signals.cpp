@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/constraint/sliding.hpp"
+#include "sinew/sim/internal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/solid_loads.hpp"
@@ -162,13 +163,10 @@ EnergyBalance energy_balance(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const rod::Rod& rod = model.rods[i].rod;
     const RodState& own = state.rods[i];
-    for (int k = 0; k < rod.count(); ++k) {
-      const auto q = rod.of_section(own.q, k);
-      balance.elastic += 0.5 * q.dot(rod.sections[k].stiffness * q);
-    }
+    balance.elastic += elastic_energy(rod, own);
+    balance.kinetic += kinetic_energy(rod, own);
     for (std::size_t m = 0; m < rod.masses.size(); ++m) {
       const auto column = static_cast<Eigen::Index>(m);
-      balance.kinetic += 0.5 * rod.masses[m].mass * own.velocity.col(column).squaredNorm();
       balance.weight -= rod.masses[m].mass * g.dot(own.masses.col(column) - model.start_masses[i].col(column));
     }
   }

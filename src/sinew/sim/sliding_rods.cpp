@@ -12,9 +12,8 @@ namespace {
 
 constexpr double kRipple = 0.1;  ///< part of the force at the rod's base that may swing
 constexpr double kHeldByPairs =
-    0.2;                           ///< part of the pressing that may come of neighbours that press against each other
-constexpr double kNothing = 1e-4;  ///< of the rod's buckling load: nothing to speak of
-constexpr double kRubs = 0.05;     ///< of the force at the base: less friction does not matter
+    0.2;                        ///< part of the pressing that may come of neighbours that press against each other
+constexpr double kRubs = 0.05;  ///< of the force at the base: less friction does not matter
 
 const rod::Section& section_at(const rod::Rod& rod, double s) {
   return *std::find_if(rod.sections.begin(), rod.sections.end() - 1,
@@ -105,7 +104,7 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
     const rod::Rod& rod = model.rods[facts.rod].rod;
     const double base = internal_wrench(model, state, facts.rod, 0.0).tail<3>().norm();
     const double swing = ripple_of(equivalent) * change;
-    if (equivalent < kFewSections && swing > kRipple * base && swing > kNothing * buckling_load(rod)) {
+    if (equivalent < kFewSections && swing > kRipple * base && swing > kNegligibleForce * buckling_load(rod)) {
       warnings.push_back(
           {.code = "sliding_force_ripples",
            .where = "rods." + model.rods[facts.rod].name,

@@ -1,20 +1,19 @@
 // How far the sections of a rod miss the configurational force where it bends and is touched within a section.
 //
-// Along a rod that nothing touches along its tangent, with the strains e, their stresses w (moments and forces in the
-// axes of the cross-section) and stiffnesses K,
+// With the strains xi of a rod, its stresses w (moments and forces in the axes of the cross-section) and its tangent t,
+// balance of forces and moments alone gives for the internal force n, where nothing pulls along the rod,
 //
-//     C = n . t + sum w_i^2 / (2 K_i)
+//     d(n . t) = -sum xi_i dw_i.
 //
-// is constant (J. D. Eshelby's energy-momentum; D. Bigoni et al., Mechanics of Materials 80 (2015) 368-374: at the
-// mouth of a sleeve the force along the rod jumps by M^2 / (2 B)). Balance of forces and moments alone gives d(n . t) =
-// -sum e_i dw_i, with the strains that the rod has. So where strains follow the stresses only in the mean of a section,
-// by polynomials,
+// The strains of a section are polynomials and follow the stresses only in its mean, xi_i = rest + e_i; strains that
+// follow them everywhere would be rest + w_i / K_i. So for the same stresses the force along the rod is off by
 //
-//     dC = sum_i (w_i / K_i - e_i) dw_i,      e_i: the projection of w_i / K_i on the section's polynomials,
+//     integral of sum_i (w_i / K_i - e_i) dw_i
 //
-// which is 0 for a section of order 0 on which the stresses are linear, and is not where a contact stands within it and
-// the stresses have a kink there. What C gains from the base to a place is by how much a force along the rod at the
-// base is off.
+// between two places. That is 0 over a section of order 0 and constant stiffness on which the stresses are linear. It
+// is not where a contact stands within the section and the stresses have a kink there: at the mouth of a sleeve, where
+// the exact force along a straight rod jumps by M^2 / (2 B) (D. Bigoni et al., Mechanics of Materials 80 (2015)
+// 368-374).
 #pragma once
 
 #include <vector>
@@ -25,10 +24,11 @@
 
 namespace sinew {
 
-/// [N] The largest part of the rod, from its base on or up to its tip, by which C is not constant.
+/// [N] By how much the force along a rod is off, at most, between its base and any other place: over the sections in
+/// which contacts press on it. (Viscous stresses count as off.)
 double configurational_error(const Model& model, const State& state, int rod);
 
-/// Warnings `touched_force_off` of rods that contacts touch. Time and number of steps are left to the caller.
+/// Warnings `touched_force_off` of rods that almost rest. Time and number of steps are left to the caller.
 std::vector<Warning> assess_touched_rods(const Model& model, const State& state);
 
 }  // namespace sinew

@@ -530,55 +530,57 @@ void CoupledFactor::solve(const RightSide& right, CoupledSolution& solution) {
   }
 }
 
-Inertia CoupledFactor::inertia() const {
-  Inertia whole;
-  if (kind_ == Kind::symmetric) {
-    if (replaced_)
-      whole = inertia_of_border();
-    else
-      whole.negative = symmetric_.negative();
-  } else if (K_.rows() > 0 && K_.allFinite()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> border(K_, Eigen::EigenvaluesOnly);
-    whole.negative = static_cast<int>((border.eigenvalues().array() < 0.0).count());
+MatrixInertia CoupledFactor::inertia() const {
+  constexpr int kLargest = 600;  // beyond that it takes seconds, and the factor's pivots have to do
+  MatrixInertia all;
+  if (kind_ != Kind::symmetric) {
+    if (K_.rows() > 0 && K_.allFinite()) all = inertia_of(K_);
+  } else if (const int size = border_size(*problem_); replaced_ && size <= kLargest) {
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
+    Dense border(K);
+    fill(border);
+    all = inertia_of(std::move(K));
+  } else {
+    all.negative = symmetric_.negative();
   }
   if (!joined_) {
-    for (const linalg::ChainFactor& factor : factors_) whole.negative += factor.negative();
+    for (const linalg::ChainFactor& factor : factors_) all.negative += factor.negative();
   }
-  return whole;
+  return all;
 }
 
 /// By its eigenvalues, scaled: those that are zero but for rounding belong to motions that nothing resists, and count
 /// as none.
-Inertia CoupledFactor::inertia_of_border() const {
-  constexpr int kLargest = 600;  // beyond that it takes seconds, and the factor's pivots have to do
+MatrixInertia CoupledFactor::inertia_of(Eigen::MatrixXd K) const {
   constexpr double kZero = 1e-12;
   constexpr double kTakesPart = 0.1;  // of the largest part of a motion
-  const int size = border_size(*problem_);
-  Inertia border{symmetric_.negative(), {}};
-  if (size > kLargest) return border;
-  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
-  Dense whole(K);
-  fill(whole);
-  const Eigen::VectorXd scale = equilibrate(K);
-  for (Eigen::Index i = 0; i < problem_->reference.size(); ++i) {
+  const Eigen::VectorXd& reference = problem_->reference;
+  Eigen::VectorXd scale = equilibrate(K);
+  for (Eigen::Index i = 0; i < reference.size(); ++i) {
     // What is left of it may be rounding, which must not be made larger.
-    const double more = scale[i] * std::sqrt(kVanished / kZero * problem_->reference[i]);
+    const double more = scale[i] * std::sqrt(kVanished / kZero * reference[i]);
     if (!(more > 1.0)) continue;
     K.row(i) /= more;
     K.col(i) /= more;
+    scale[i] /= more;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(K, Eigen::EigenvaluesOnly);
-  border.negative = static_cast<int>((solved.eigenvalues().array() < -kZero).count());
-  if (problem_->reference.size() == 0 || !(solved.eigenvalues().cwiseAbs().minCoeff() <= kZero)) return border;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(K, Eigen::EigenvaluesOnly);
+  MatrixInertia found;
+  found.negative = static_cast<int>((values.eigenvalues().array() < -kZero).count());
+  const bool known = reference.size() > 0 && reference.maxCoeff() > 0.0;
+  if (!known || !(values.eigenvalues().cwiseAbs().minCoeff() <= kZero)) return found;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> motions(K);
-  for (int i = 0; i < size; ++i) {
+  Eigen::VectorXd part = Eigen::VectorXd::Zero(reference.size());
+  for (Eigen::Index i = 0; i < K.rows(); ++i) {
     if (std::abs(motions.eigenvalues()[i]) > kZero) continue;
-    const Eigen::VectorXd motion = motions.eigenvectors().col(i).cwiseAbs();
-    for (int k = 0; k < unknowns_of(*problem_); ++k) {
-      if (motion[k] > kTakesPart * motion.maxCoeff()) border.free.push_back(k);
-    }
+    const Eigen::VectorXd motion = motions.eigenvectors().col(i).cwiseProduct(scale).head(reference.size());
+    const Eigen::VectorXd weighed = motion.cwiseAbs().cwiseProduct(reference.cwiseSqrt());
+    if (const double largest = weighed.maxCoeff(); largest > 0.0) part = part.cwiseMax(weighed / largest);
   }
-  return border;
+  for (int i = 0; i < static_cast<int>(part.size()); ++i) {
+    if (part[i] > kTakesPart) found.null_unknowns.push_back(i);
+  }
+  return found;
 }
 
 CoupledSolution solve_direct(const CoupledProblem& problem) {

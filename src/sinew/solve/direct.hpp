@@ -33,10 +33,10 @@ struct CoupledSolution {
   CoupledSolution& operator+=(const CoupledSolution& other);
 };
 
-/// Signs of eigenvalues.
-struct Inertia {
-  int negative = 0;       ///< how many are
-  std::vector<int> free;  ///< unknowns z that take part in motions which nothing resists, where they have a `reference`
+/// Signs of the eigenvalues of a symmetric matrix (Sylvester).
+struct MatrixInertia {
+  int negative = 0;                ///< how many are negative
+  std::vector<int> null_unknowns;  ///< unknowns z with a `reference` that take part in motions which nothing resists
 };
 
 /// Factors once, solves often, and keeps its memory for the next problem. Chains are eliminated in time proportional to
@@ -61,11 +61,11 @@ class CoupledFactor {
   /// it was not that near: what has been made of its parts is not good for much either.
   bool polish(const RightSide& right, CoupledSolution& solution);
 
-  /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric, and what is free. An equilibrium is
-  /// stable where there are no more of them than rows. Costs an eigenvalue problem of the border where that has no
+  /// Negative eigenvalues of the whole matrix (Sylvester), if it is symmetric, and what nothing resists. An equilibrium
+  /// is stable where there are no more of them than rows. Costs an eigenvalue problem of the border where that has no
   /// symmetric factor, or one with pivots that vanished and were replaced: what is left of others beside them may be
   /// rounding, whose sign says nothing.
-  Inertia inertia() const;
+  MatrixInertia inertia() const;
 
  private:
   enum class Kind { symmetric, general, singular };
@@ -74,7 +74,7 @@ class CoupledFactor {
   void factor_general(bool join_chains);
   template <class Border>
   void fill(Border& border) const;
-  Inertia inertia_of_border() const;
+  MatrixInertia inertia_of(Eigen::MatrixXd K) const;
   void weigh();
   void solve_once(const RightSide& right, CoupledSolution& solution, Part wanted = Part::all);
   void find_strains(const RightSide& right, CoupledSolution& solution);
