@@ -146,6 +146,39 @@ TEST(Faults, sag_beside_post) {
   EXPECT_NEAR(run.last("tip.z"), 77.897e-3, 1e-6);
 }
 
+// A softer one, which bends by 80 degrees at the first point: a post anywhere in the scene stopped it at t = 0.
+TEST(Faults, soft_rod_beside_post) {
+  Vec3 without = Vec3::Zero();
+  for (const bool post : {false, true}) {
+    Scene scene = test::lone_rod(1700.0, 12);
+    scene.analysis = Analysis::quasi_static;
+    scene.time = {0.02, 0.1};
+    scene.gravity = Vec3(0, 0, -9.81);
+    Rod& rod = scene.rods[0].second;
+    rod.path = {Vec3::Zero(), Vec3(0.0689, 0, 0)};
+    rod.strains = {Strain::torsion, Strain::bending_y, Strain::bending_z};
+    rod.section = Circle{0.53e-3};
+    rod.material.young = 2e6;
+    scene.outputs[0].second.at = 0.0689;
+    if (post) {
+      Obstacle far;
+      far.shape = SphereShape{0.01};
+      far.pose = {{}, {0.09, -0.2, -0.05}};
+      scene.obstacles.emplace_back("post", far);
+      ContactPair pair;
+      pair.first = "rod";
+      pair.second = "post";
+      scene.contact.pairs.push_back(pair);
+    }
+    const Model model = build(scene, test::read_block);
+    const test::Trace trace = test::run_all(model);
+    ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
+    const Vec3 tip = test::tip(model, trace.states.back());
+    if (!post) without = tip;
+    EXPECT_LT((tip - without).norm(), 1e-9);
+  }
+}
+
 // Two bodies in free flight that never come nearer than 20 mm: 0.0038 J became 0.495 J.
 TEST(Faults, phantom_capsule_box) {
   for (const char* step : {"0.125 ms", "1 ms"}) {

@@ -22,6 +22,8 @@ constexpr double kBehindTheStart = -0.05, kMostSteps = 3000;
 /// Of a quasi-static step, whose path is short.
 constexpr int kMostDetours = 200;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
+/// Of its load, brought on by parts where contacts make kinks in a path.
+constexpr double kSmallestPart = 1.0 / 256.0;
 
 /// What is prescribed along a path: all of it grows linearly from one end to the other.
 struct Ramp {
@@ -188,24 +190,31 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     return accepted(reached.report.status) && (touches || !reached.report.unstable) &&
            count_folded(model, reached.at.state) <= folded;
   };
-  const auto guessed = [&](const State& from) {
-    along(ramp, from)(1.0, memory.context);
+  const auto guessed = [&](const State& from, double t) {
+    along(ramp, from)(t, memory.context);
     Iterate guess;
+    guess.t = t;
     first_guess(memory.context, guess.state);
     follow_points(memory.context, guess.state, memory.here);
     find_contacts(memory.context, guess.state, memory.here.contacts(), memory.alarm);
     return guess;
   };
+  // From `from` to t, contacts found as far away as it takes.
+  const auto go = [&](const State& from, double t, const NewtonRules& rules) {
+    Reached reached;
+    along(ramp, from)(t, memory.context);
+    StepReport report = look_until_found(memory, alarm_distance(memory.context), [&] {
+      reached = land(memory, ramp, from, guessed(from, t), rules);
+      return reached.report;
+    });
+    reached.report = std::move(report);
+    return reached;
+  };
 
   NewtonRules rules = whole_steps(model);
   rules.limit = std::min(rules.limit, kMostIterations);
-  along(ramp, state)(1.0, memory.context);
-  Reached end;
-  const StepReport first = look_until_found(memory, alarm_distance(memory.context), [&] {
-    end = land(memory, ramp, state, guessed(state), rules);
-    return end.report;
-  });
-  StepReport spent = first;
+  Reached end = go(state, 1.0, rules);
+  StepReport spent = end.report;
   if (!sound(end)) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches; ++i) {
@@ -216,15 +225,21 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
     }
+    for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart;) {
+      Reached next = go(on.state, std::min(on.t + part, 1.0), rules);
+      add_effort(next.report, spent);
+      if (!sound(next)) {
+        part *= 0.5;
+        continue;
+      }
+      on = next.at;
+      part *= 2.0;
+      if (on.t == 1.0) end = std::move(next);
+    }
     if (on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
-      Reached minimum;
-      add_effort(look_until_found(memory, memory.alarm,
-                                  [&] {
-                                    minimum = land(memory, ramp, on.state, guessed(on.state), rules);
-                                    return minimum.report;
-                                  }),
-                 spent);
+      Reached minimum = go(on.state, 1.0, rules);
+      add_effort(minimum.report, spent);
       if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
     }
   }

@@ -19,7 +19,8 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
 /// `quasi_static`: the equilibrium under what is prescribed at `time`, from that of `state` (from no loads at all where
 /// the run begins). Newton goes there at once; where it does not get there, or ends at an equilibrium that is unstable
 /// or inside out, it follows the path, and where the path turns back or gets unstable, it leaves it for the nearest
-/// minimum under all loads: the jump that a real body would make.
+/// minimum under all loads: the jump that a real body would make. With contacts, which make kinks in a path, loads are
+/// brought on by parts instead.
 StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
                             double time);
 
