@@ -108,34 +108,59 @@ TEST(Simplex, GapChangesAsTheNormalSays) {
   }
 }
 
-TEST(Simplex, NormalOfWhatStaysApartTurnsAsTold) {
+/// The gap's gradient: c_i n over the corners of a and b.
+Eigen::VectorXd gradient(const Simplex& a, const Simplex& b, const Nearest& found) {
+  Eigen::VectorXd g(3 * (a.corners() + b.corners()));
+  for (int i = 0; i < a.corners(); ++i) g.segment<3>(3 * i) = found.a[static_cast<std::size_t>(i)] * found.normal;
+  for (int i = 0; i < b.corners(); ++i)
+    g.segment<3>(3 * (a.corners() + i)) = -found.b[static_cast<std::size_t>(i)] * found.normal;
+  return g;
+}
+
+TEST(Simplex, SecondDerivativesOfTheGapAreDifferencesOfItsGradient) {
   Random random;
   constexpr double e = 1e-6;
-  int told = 0;
-  for (int trial = 0; trial < 200; ++trial) {
-    for (const Simplex::Kind kind : {point, segment, triangle, plane}) {
-      const bool edges = trial % 2 == 1 && kind == segment;
-      const Simplex a = simplex(edges ? segment : point, random, 0.1), b = simplex(kind, random, 0.05);
-      const Facing kept = facing(a, b);
-      const Nearest here = nearest(a, b, kept);
-      const Eigen::Matrix3d H = turn_of_normal(a, b, here, kept);
-      if (H.norm() > 10.0) continue;  // all but touching, where differences say nothing
-      Eigen::Matrix3d difference;
-      double off = 0.0;
-      for (int i = 0; i < 3; ++i) {
-        Simplex ahead = a, behind = a;
-        for (Vec3& x : ahead.x) x[i] += e;
-        for (Vec3& x : behind.x) x[i] -= e;
-        const Nearest plus = nearest(ahead, b, kept), minus = nearest(behind, b, kept);
-        difference.col(i) = (plus.normal - minus.normal) / (2 * e);
-        off = std::max(off, ((plus.normal - here.normal) - (here.normal - minus.normal)).norm());
-      }
-      if (off > 1e-8) continue;  // the nearest part changes there
-      EXPECT_LT((H - difference).norm(), 1e-4 * (1.0 + H.squaredNorm())) << trial;
-      told += H.norm() > 0.1 ? 1 : 0;
+  std::array<int, 4> compared{};  // by the kind of facing
+  for (int trial = 0; trial < 10000; ++trial) {
+    const Simplex::Kind kind = std::array{point, segment, triangle, plane}[static_cast<std::size_t>(trial % 4)];
+    const bool edges = trial % 8 > 3 && kind == segment, thin = trial % 3 == 0;
+    Simplex a = simplex(edges ? segment : point, random, thin ? 0.0 : 0.1),
+            b = simplex(kind, random, thin ? 0.0 : 0.05);
+    if (edges && thin) b.normal = random.point().normalized();
+    const Facing kept = facing(a, b);
+    const Nearest here = nearest(a, b, kept);
+    if (kept.kind == Facing::Kind::face && kind == triangle && here.b[0] * here.b[1] * here.b[2] == 0.0) continue;
+    const GapHessian H = gap_hessian(a, b, here, kept);
+    if (kept.kind == Facing::Kind::fixed) {  // the gap along a fixed direction is not stationary in its places
+      EXPECT_EQ(H.norm(), 0.0);
+      continue;
     }
+    if (H.norm() > 30.0) continue;  // all but touching, or all but parallel: differences say nothing
+    const Eigen::VectorXd g = gradient(a, b, here);
+    Eigen::MatrixXd difference(g.size(), g.size());
+    double kink = 0.0;
+    for (int i = 0; i < a.corners() + b.corners(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Simplex& moved = i < a.corners() ? a : b;
+        double& x = moved.x[static_cast<std::size_t>(i < a.corners() ? i : i - a.corners())][axis];
+        const double before = x;
+        x = before + e;
+        const Eigen::VectorXd plus = gradient(a, b, nearest(a, b, kept));
+        x = before - e;
+        const Eigen::VectorXd minus = gradient(a, b, nearest(a, b, kept));
+        x = before;
+        difference.col(3 * i + axis) = (plus - minus) / (2 * e);
+        kink = std::max(kink, (plus - 2.0 * g + minus).norm());
+      }
+    }
+    if (kink > 1e-8) continue;  // the nearest part changes there
+    EXPECT_LT((H - difference).norm(), 1e-4 * (1.0 + H.squaredNorm())) << trial;
+    EXPECT_LT((H - H.transpose()).norm(), 1e-12 * (1.0 + H.norm())) << trial;
+    compared[static_cast<std::size_t>(kept.kind)] += H.norm() > 0.1;
   }
-  EXPECT_GT(told, 200);
+  EXPECT_GT(compared[static_cast<std::size_t>(Facing::Kind::apart)], 2000);
+  EXPECT_GT(compared[static_cast<std::size_t>(Facing::Kind::face)], 100);
+  EXPECT_GT(compared[static_cast<std::size_t>(Facing::Kind::crossing)], 20);
 }
 
 TEST(Simplex, NormalOfAFaceStaysWhereAPointPassesThroughIt) {

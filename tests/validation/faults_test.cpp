@@ -138,6 +138,20 @@ TEST(Faults, contact_two_pins) {
   EXPECT_NEAR(run.last("basef.x"), along, 5e-3 * along);
 }
 
+// A ball pressed on a soft beam at rest: without the contacts' curvature in the tangent it stopped half-way.
+TEST(Faults, press_on_beam) {
+  for (const auto& [friction, tip] : {std::pair{"0", -35.9e-3}, {"0.5", -36.3e-3}}) {
+    for (const char* step : {"10 ms", "50 ms"}) {
+      if (std::string(friction) == "0" && std::string(step) == "50 ms") continue;  // ends at another equilibrium
+      SCOPED_TRACE(std::string("friction ") + friction + ", " + step);
+      const RecordedRun run =
+          fault("press_on_beam", {std::string("contact.friction=") + friction, std::string("time.step=") + step});
+      ASSERT_TRUE(run.done()) << run.why();
+      EXPECT_NEAR(run.last("tip.z"), tip, 0.2e-3);
+    }
+  }
+}
+
 // At rest, a rod that sags beside a post: "moves further in a step than contacts are looked for".
 TEST(Faults, sag_beside_post) {
   const RecordedRun run = fault("sag_beside_post");

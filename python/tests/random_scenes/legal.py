@@ -201,7 +201,7 @@ def legal(random_: random.Random) -> tuple[Scene, Judge]:
     if random_.random() < 0.25 and analysis in ("dynamic", "quasi_static"):
         scene["newton"] = random_.choice([1, 2])
     what(random_, scene, duration)
-    if random_.random() < 0.1 and "solids" in scene and not scene.keys() & {"newton", "contact"}:
+    if random_.random() < 0.1 and "solids" in scene and not scene.keys() & {"newton", "contact", "bodies", "obstacles"}:
         scene["newton"] = {"precision": "single"}
 
     def judge(rows: list[Row], report: Any) -> list[str]:

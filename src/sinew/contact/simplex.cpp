@@ -221,28 +221,60 @@ Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
   return found;
 }
 
-Eigen::Matrix3d turn_of_normal(const Simplex& a, const Simplex& b, const Nearest& found, const Facing& kept) {
-  const double apart = found.gap + a.radius + b.radius;
-  if (kept.kind != Facing::Kind::apart || b.kind == Simplex::Kind::plane || apart == 0.0)
-    return Eigen::Matrix3d::Zero();
-  // What has several corners near may slide along the line or plane through them.
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() - found.normal * found.normal.transpose();
-  const auto slides = [&turn](const Simplex& own, const std::array<double, 3>& weights) {
-    Vec3 first = Vec3::Zero();
-    int near = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) {
-      if (!(weights[i] > 0.0)) continue;
-      if (near++ == 0) {
-        first = own.x[i];
-      } else {
-        const Vec3 along = (turn * (own.x[i] - first)).normalized();  // across what is taken out already
-        turn -= along * along.transpose();
+GapHessian gap_hessian(const Simplex& a, const Simplex& b, const Nearest& found, const Facing& kept) {
+  constexpr int kMostParameters = 4;
+  const int of_a = a.corners(), corners = of_a + b.corners();
+  GapHessian H = GapHessian::Zero(3 * corners, 3 * corners);
+  const double d = found.gap + a.radius + b.radius;
+  const bool apart = kept.kind == Facing::Kind::apart;
+  if (kept.kind == Facing::Kind::fixed || b.kind == Simplex::Kind::plane || !a.rim.isZero() || (apart && d == 0.0))
+    return H;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostParameters> e(3, 0);
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMostParameters> C(6, 0);
+  Eigen::Matrix<double, 6, 1> c = Eigen::Matrix<double, 6, 1>::Zero();
+  const auto add_side = [&](const Simplex& own, const std::array<double, 3>& weights, int first_row, double sign) {
+    int first = -1;
+    for (int i = 0; i < own.corners(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      c[first_row + i] = sign * weights[k];
+      if (apart && !(weights[k] > 0.0)) continue;  // it is past that corner
+      if (first < 0) {
+        first = i;
+        continue;
       }
+      const Eigen::Index column = e.cols();
+      e.conservativeResize(3, column + 1);
+      C.conservativeResize(6, column + 1);
+      C.col(column).setZero();
+      C(first_row + i, column) = sign;
+      C(first_row + first, column) = -sign;
+      e.col(column) = sign * (own.x[k] - own.x[static_cast<std::size_t>(first)]);
     }
   };
-  slides(a, found.a);
-  slides(b, found.b);
-  return turn / apart;
+  add_side(a, found.a, 0, 1.0);
+  add_side(b, found.b, of_a, -1.0);
+  const Vec3& n = found.normal;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostParameters, 3> slides;                             // G^-1 e^T
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, 6> follows(e.cols(), 6);  // G^-1 C^T
+  slides.resize(e.cols(), 3);
+  if (e.cols() > 0) {
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, kMostParameters> G =
+        e.transpose() * e;
+    const auto inverse = G.inverse().eval();
+    if (!inverse.allFinite()) return H;  // edges side by side
+    slides = inverse * e.transpose();
+    follows = inverse * C.transpose();
+  }
+  Eigen::Matrix3d across = Eigen::Matrix3d::Zero();  // two directions to slide in leave none across
+  if (e.cols() < 2) across = (Eigen::Matrix3d::Identity() - n * n.transpose() - e * slides) / d;
+  for (int i = 0; i < corners; ++i) {
+    for (int j = 0; j < corners; ++j) {
+      const Vec3 own = e * follows.col(i), other = e * follows.col(j);
+      H.block<3, 3>(3 * i, 3 * j) = c[i] * c[j] * across - c[i] * other * n.transpose() - n * own.transpose() * c[j] -
+                                    d * C.row(i).dot(follows.col(j)) * n * n.transpose();
+    }
+  }
+  return H;
 }
 
 }  // namespace sinew::contact

@@ -58,8 +58,15 @@ struct Facing {
 Facing facing(const Simplex& a, const Simplex& b);
 Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept);
 
-/// How the normal turns as a moves past b without turning: dn = H dx, symmetric; H is the gap's second derivative.
-Eigen::Matrix3d turn_of_normal(const Simplex& a, const Simplex& b, const Nearest& found, const Facing& kept);
+/// Second derivative of the gap over the corners of a and then of b, three coordinates each [1/m].
+using GapHessian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 18, 18>;
+
+/// With y = sum c_i x_i = d n from the nearest point of b to that of a (c_i: weights, negative of b), e_k = dy/ds_k for
+/// each parameter s_k by which one of the two points may slide along its edge or face, C_ik = dc_i/ds_k,
+/// G_kl = e_k . e_l and P = 1 - n n^T, differentiating the gap's gradient c_i n and the conditions e_k . y = 0 gives
+///     H_ij = c_i c_j (P - e G^-1 e^T) / d - c_i (e G^-1 C_j) n^T - n (e G^-1 C_i)^T c_j - d (C_i G^-1 C_j) n n^T.
+/// Zero where the normal is fixed, and of a plane.
+GapHessian gap_hessian(const Simplex& a, const Simplex& b, const Nearest& found, const Facing& kept);
 
 /// Weights of the corners at the point of a segment or triangle that is nearest to p.
 std::array<double, 2> on_segment(const Vec3& p, const Vec3& x, const Vec3& y);

@@ -516,8 +516,14 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     const Vec3& n = touch.nearest.normal;
     touch.frame = frame_of(n);
     touch.force = turned(own, n);
-    if (own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle)
-      touch.stiffness = -touch.force.dot(n) * contact::turn_of_normal(a, b, touch.nearest, room.facings[i]);
+    touch.stiffness.resize(0, 0);
+    touch.of_rod_point.setZero();
+    const bool bends = is_piece_of_rod(own.a, a) || is_piece_of_rod(own.b, b);
+    if (!bends && touch.force.dot(n) > 0.0) {
+      touch.stiffness = -touch.force.dot(n) * contact::gap_hessian(a, b, touch.nearest, room.facings[i]);
+      if (own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle)
+        touch.of_rod_point = touch.stiffness.topLeftCorner<3, 3>();
+    }
     touch.point_a = point_on(own.a, a, touch.nearest.a, feet.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)
                                                    : point_on(own.b, b, touch.nearest.b, feet.b, n);

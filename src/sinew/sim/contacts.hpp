@@ -20,8 +20,11 @@ struct Touch {
   Vec3 point_a, point_b;      ///< [m] on the two surfaces
   Vec3 force = Vec3::Zero();  ///< [N] on a, turned with the normal since it was set
   Vec3 u = Vec3::Zero();      ///< [m] gap, and slip since the start of the step
-  /// [N/m] of a rod's point on an obstacle: how the normal force turns as it moves, - lambda_n dn/dx.
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  /// [N/m] what the turning of the normal adds to the tangent, - lambda_n d2gap, over the corners of a and then of b;
+  /// empty where nothing presses or either side is a piece of a rod.
+  contact::GapHessian stiffness;
+  /// The same of a rod's point on an obstacle, or zero.
+  Eigen::Matrix3d of_rod_point = Eigen::Matrix3d::Zero();
 };
 
 /// What contacts of a step are evaluated with; memory of the last time.

@@ -22,6 +22,25 @@ void each_load(const StepContext& context, int number, const Visit& visit) {
   }
 }
 
+/// What the turning of contacts' normals adds to A of a solid. (Of two solids that touch, what each feels of the
+/// other's motion is left out.)
+void add_contact_stiffness(const SolidModel& model, int number, const State& iterate, const std::vector<Touch>& touches,
+                           double* values) {
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Eigen::Index size = touches[i].stiffness.rows();
+    if (size == 0) continue;
+    const auto add = [&](const ContactSide& side, Eigen::Index first) {
+      if (side.on != Collider{Collider::Kind::solid, number}) return;
+      const auto corners = static_cast<std::size_t>(side.local.corners());
+      const auto n = static_cast<Eigen::Index>(3 * corners);
+      add_over_nodes(model, {side.nodes.data(), corners}, touches[i].stiffness.block(first, first, n, n), values);
+    };
+    const ContactState& contact = iterate.contacts[i];
+    add(contact.a, 0);
+    add(contact.b, 3 * contact.a.local.corners());
+  }
+}
+
 bool is_on(const State& iterate, const SolidRow& row) { return row.point < 0 || iterate.points[row.point].on; }
 
 }  // namespace
@@ -77,8 +96,9 @@ void solid_forces(const StepContext& context, const State& iterate, const std::v
   forces.largest = std::sqrt(r.colwise().squaredNorm().maxCoeff());
 }
 
-bool FreeMotion::factor(const StepContext& context, const State& iterate, int number, const SolidForces& forces,
-                        solid::Tangent kind, threads::Crew& crew, StageTimes& times, solve::VolumePart& volume) {
+bool FreeMotion::factor(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, int number,
+                        const SolidForces& forces, solid::Tangent kind, threads::Crew& crew, StageTimes& times,
+                        solve::VolumePart& volume) {
   const SolidModel& model = context.model.solids[number];
   if (!factor_) plan(model);
   Clock clock(times.assembly);
@@ -99,6 +119,7 @@ bool FreeMotion::factor(const StepContext& context, const State& iterate, int nu
     each_load(context, number, [&](const SolidLoadModel& load, double factor) {
       add_pressure_tangent(load, factor, iterate.solids[number].x, values);
     });
+    add_contact_stiffness(model, number, iterate, touches, values);
   }
   clock.next(times.factor);
   push_ = -forces.r;

@@ -32,8 +32,9 @@ class FreeMotion {
  public:
   /// Puts A together, at the iterate that these are the forces of, and factors it; `volume` receives W. What the forces
   /// leave unbalanced is half solved on the way, as one more row. False where A cannot be factored.
-  bool factor(const StepContext& context, const State& iterate, int number, const SolidForces& forces,
-              solid::Tangent kind, threads::Crew& crew, StageTimes& times, solve::VolumePart& volume);
+  bool factor(const StepContext& context, const State& iterate, const std::vector<Touch>& touches, int number,
+              const SolidForces& forces, solid::Tangent kind, threads::Crew& crew, StageTimes& times,
+              solve::VolumePart& volume);
   double stiffness() const { return factor_->largest_diagonal(); }  ///< [N/m] largest diagonal entry of A
   int negative() const { return factor_->negative(); }  ///< eigenvalues of A: 0 where the volume by itself is stable
 

@@ -170,8 +170,8 @@ bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& fail
 
 void Linearization::factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times) {
   const auto factored = [&](solid::Tangent wanted) {
-    return free_[number].factor(*context_, *iterate_, static_cast<int>(number), forces_[number], wanted, crew_, times,
-                                reduced_.problem.volumes[number]);
+    return free_[number].factor(*context_, *iterate_, contacts_.touches, static_cast<int>(number), forces_[number],
+                                wanted, crew_, times, reduced_.problem.volumes[number]);
   };
   Factored& own = factored_[number];
   own = factored(kind) ? Factored::as_told : Factored::failed;

@@ -270,6 +270,14 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
     add_diagonal(model.node_places[static_cast<std::size_t>(node)], model.springs.col(node), values);
 }
 
+void add_over_nodes(const SolidModel& model, std::span<const int> nodes, const Eigen::Ref<const Eigen::MatrixXd>& K,
+                    double* values) {
+  each_pair(nodes, [&](std::size_t a, std::size_t b) {
+    const auto block = K.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+    add_block(block_place(model, nodes[a], nodes[b]), block, values);
+  });
+}
+
 void add_grip(const SolidModel& model, const Grip& grip, double* values) {
   add_diagonal(model.node_places[static_cast<std::size_t>(grip.node)], Eigen::Vector3d::Constant(grip.stiffness),
                values);

@@ -1,6 +1,8 @@
 // The matrix A of (10) of one volume: its pattern and how it is factored, once, and its values, element by element.
 #pragma once
 
+#include <span>
+
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/step.hpp"
 
@@ -18,6 +20,10 @@ void assemble(const SolidModel& model, const solid::StepStart& start, const Eige
 
 /// Adds the stiffness of a grip.
 void add_grip(const SolidModel& model, const Grip& grip, double* values);
+
+/// Adds a symmetric matrix over nodes that share a cell, three coordinates each.
+void add_over_nodes(const SolidModel& model, std::span<const int> nodes, const Eigen::Ref<const Eigen::MatrixXd>& K,
+                    double* values);
 
 /// Adds the symmetric part of the tangent of a pressure. The rest acts only along the open edge of the loaded surface.
 void add_pressure_tangent(const SolidLoadModel& load, double factor, const Eigen::Matrix3Xd& x, double* values);
