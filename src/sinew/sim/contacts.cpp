@@ -518,11 +518,13 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     touch.force = turned(own, n);
     touch.stiffness.resize(0, 0);
     touch.of_rod_point.setZero();
-    const bool bends = is_piece_of_rod(own.a, a) || is_piece_of_rod(own.b, b);
-    if (!bends && touch.force.dot(n) > 0.0) {
+    // (Only solids and points of rods on obstacles have it in their tangents.)
+    const bool on_solid = own.a.on.kind == Kind::solid || own.b.on.kind == Kind::solid,
+               on_rod = own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle,
+               turns = b.kind != Simplex::Kind::plane && !is_piece_of_rod(own.a, a) && !is_piece_of_rod(own.b, b);
+    if ((on_solid || on_rod) && turns && touch.force.dot(n) > 0.0) {
       touch.stiffness = -touch.force.dot(n) * contact::gap_hessian(a, b, touch.nearest, room.facings[i]);
-      if (own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle)
-        touch.of_rod_point = touch.stiffness.topLeftCorner<3, 3>();
+      if (on_rod) touch.of_rod_point = touch.stiffness.topLeftCorner<3, 3>();
     }
     touch.point_a = point_on(own.a, a, touch.nearest.a, feet.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)

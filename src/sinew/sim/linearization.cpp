@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/linalg/finite.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/contact_passage.hpp"
@@ -370,11 +370,10 @@ double trusted_fraction(const StepContext& context, const Increment& increment) 
 
 std::string beyond_trust(const StepContext& context, const Increment& increment) {
   const Model& model = context.model;
-  char text[80];
   const Bend bend = largest_bend(context, increment.reduced);
   if (bend.angle > kTrustedTurn) {
-    std::snprintf(text, sizeof text, ", a section bent by %.3g rad in one linearisation", bend.angle);
-    return "rods." + model.rods[bend.rod].name + text;
+    return "rods." + model.rods[bend.rod].name + ", a section bent by " + three_digits(bend.angle) +
+           " rad in one linearisation";
   }
   for (std::size_t i = 0; i < increment.dx.size(); ++i) {
     const Eigen::Matrix3Xd& dx = increment.dx[i];
@@ -382,8 +381,7 @@ std::string beyond_trust(const StepContext& context, const Increment& increment)
     const Vec3 along = dx.rowwise().mean();  // of it, any distance is exact
     const double moved = (dx.colwise() - along).cwiseAbs().maxCoeff();
     if (!(moved > kTrustedShare * model.size)) continue;
-    std::snprintf(text, sizeof text, ", a node moved by %.3g m in one linearisation", moved);
-    return "solids." + model.solids[i].name + text;
+    return "solids." + model.solids[i].name + ", a node moved by " + three_digits(moved) + " m in one linearisation";
   }
   return {};
 }

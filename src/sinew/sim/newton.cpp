@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/sim/assessment.hpp"
 #include "sinew/sim/step_ends.hpp"
 
@@ -153,14 +153,12 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       }
     }
     if (memory.passage.kind != Passage::Kind::none && accepted(report.status)) {
-      char text[96];
-      std::snprintf(text, sizeof text,
-                    memory.passage.kind == Passage::Kind::folded
-                        ? ": %.3g mm of the rod lies in it between two points; give the rod more sections"
-                        : " by %.3g mm on the way",
-                    1e3 * memory.passage.depth);
+      const std::string depth = three_digits(1e3 * memory.passage.depth) + " mm";
       report.status = Status::passed_through;
-      report.detail = name_of_pair(context.model, memory.passage.pair) + text;
+      report.detail = name_of_pair(context.model, memory.passage.pair) +
+                      (memory.passage.kind == Passage::Kind::folded
+                           ? ": " + depth + " of the rod lies in it between two points; give the rod more sections"
+                           : " by " + depth + " on the way");
     }
     report.redundant |= !here.reduced().redundant.empty();
     if (accepted(report.status) && rules.evaluation == Evaluation::full) {
