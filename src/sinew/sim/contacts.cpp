@@ -371,6 +371,15 @@ double least_gap(const StepContext& context, double restitution, const Beginning
   return restitution > 0.0 && hits ? now.gap - restitution * now.approach * context.h : 0.0;
 }
 
+/// Whether the normal of a contact turns as its parts move; pieces of rods leave it out.
+bool turns(const ContactState& own, const Simplex& a, const Simplex& b) {
+  return b.kind != Simplex::Kind::plane && !is_piece_of_rod(own.a, a) && !is_piece_of_rod(own.b, b);
+}
+
+contact::GapHessian tangent_of(const Touch& touch, const Simplex& a, const Simplex& b, const contact::Facing& facing) {
+  return -touch.force.dot(touch.nearest.normal) * contact::gap_hessian(a, b, touch.nearest, facing);
+}
+
 }  // namespace
 
 double alarm_distance(const StepContext& context) {
@@ -518,14 +527,9 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     touch.force = turned(own, n);
     touch.stiffness.resize(0, 0);
     touch.of_rod_point.setZero();
-    // (Only solids and points of rods on obstacles have it in their tangents.)
-    const bool on_solid = own.a.on.kind == Kind::solid || own.b.on.kind == Kind::solid,
-               on_rod = own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle,
-               turns = b.kind != Simplex::Kind::plane && !is_piece_of_rod(own.a, a) && !is_piece_of_rod(own.b, b);
-    if ((on_solid || on_rod) && turns && touch.force.dot(n) > 0.0) {
-      touch.stiffness = -touch.force.dot(n) * contact::gap_hessian(a, b, touch.nearest, room.facings[i]);
-      if (on_rod) touch.of_rod_point = touch.stiffness.topLeftCorner<3, 3>();
-    }
+    const bool on_rod = own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle;
+    if (on_rod && turns(own, a, b) && touch.force.dot(n) > 0.0)
+      touch.of_rod_point = tangent_of(touch, a, b, room.facings[i]).topLeftCorner<3, 3>();
     touch.point_a = point_on(own.a, a, touch.nearest.a, feet.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)
                                                    : point_on(own.b, b, touch.nearest.b, feet.b, n);
@@ -533,6 +537,18 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
                       (touch.point_b - was(own.b, touch.nearest.b, touch.point_b, start, now));
     touch.u = Vec3(touch.nearest.gap, slip.dot(touch.frame.col(1)), slip.dot(touch.frame.col(2)));
     if (touch.u[0] < room.least[i]) play(room, static_cast<int>(i));
+  }
+}
+
+void add_contact_curvature(const StepContext& context, const State& iterate, ContactRoom& room) {
+  const Moment now{context.model, iterate, context.displacement, room.now};
+  for (std::size_t i = 0; i < room.touches.size(); ++i) {
+    const ContactState& own = iterate.contacts[i];
+    Touch& touch = room.touches[i];
+    const bool on_solid = own.a.on.kind == Kind::solid || own.b.on.kind == Kind::solid;
+    if (!on_solid || !(touch.force.dot(touch.nearest.normal) > 0.0)) continue;
+    const Simplex a = now.placed(own.a), b = now.placed(own.b);
+    if (turns(own, a, b)) touch.stiffness = tangent_of(touch, a, b, room.facings[i]);
   }
 }
 

@@ -20,11 +20,11 @@ struct Touch {
   Vec3 point_a, point_b;      ///< [m] on the two surfaces
   Vec3 force = Vec3::Zero();  ///< [N] on a, turned with the normal since it was set
   Vec3 u = Vec3::Zero();      ///< [m] gap, and slip since the start of the step
-  /// [N/m] what the turning of the normal adds to the tangent, - lambda_n d2gap, over the corners of a and then of b;
-  /// empty where nothing presses or either side is a piece of a rod.
-  contact::GapHessian stiffness;
-  /// The same of a rod's point on an obstacle, or zero.
+  /// [N/m] what the turning of the normal adds to the tangent, - lambda_n d2gap, of a rod's point on an obstacle, or
+  /// zero.
   Eigen::Matrix3d of_rod_point = Eigen::Matrix3d::Zero();
+  /// The same over the corners of a and then of b where a solid is pressed on (`add_contact_curvature`), or empty.
+  contact::GapHessian stiffness;
 };
 
 /// What contacts of a step are evaluated with; memory of the last time.
@@ -49,6 +49,10 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
 
 /// Where the contacts of an iterate are.
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);
+
+/// How the normals of those that press on solids turn, for an exact tangent; not of pieces of rods. (Of contacts that
+/// are evaluated there.)
+void add_contact_curvature(const StepContext& context, const State& iterate, ContactRoom& room);
 
 /// Writes where contacts are into an accepted state, and drops those that are open, but for the nearest of a pair that
 /// is sought and does not touch.

@@ -59,6 +59,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   if (!context.model.pairs.empty()) {
     const Clock clock(times.contact);
     evaluate_contacts(context, iterate, contacts_);
+    if (then == solid::Tangent::exact) add_contact_curvature(context, iterate, contacts_);
   }
   contacts_ready_ = false;
   beside(
@@ -151,6 +152,10 @@ std::string Linearization::unanswered_contact() const {
 
 bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& failed) {
   if (ahead_ != kind) {
+    if (kind == solid::Tangent::exact) {
+      const Clock clock(times_->contact);
+      add_contact_curvature(*context_, *iterate_, contacts_);
+    }
     beside([&](std::size_t i, StageTimes& own) { factor_solid(i, kind, own); },
            [&](StageTimes& own) {
              const Clock clock(own.solve);
