@@ -74,6 +74,15 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
   return deepest;
 }
 
+/// How far a place is outside the box of a shape along the axis where that is most; negative inside.
+double outside(const Vec3& local, const Vec3& reach) { return (local.cwiseAbs() - reach).maxCoeff(); }
+
+/// What the axis of a section may be long at most [m]: Legendre polynomials are at most 1.
+double longest(const rod::Configuration& shape, int section) {
+  const rod::Section& own = shape.rod->sections[section];
+  return own.length() * shape.strains[section].bottomRows<3>().colwise().norm().sum();
+}
+
 /// How deep the curve of a rod lies in a rigid shape between the points and pieces by which it touches: a rod that
 /// folds within one section may. 0 for other pairs.
 double deepest_between(const Moment& now, const PairModel& pair) {
@@ -86,14 +95,20 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   const contact::Pose pose = now.pose(hard);
   const Vec3 reach = contact::reach(shape_of(model, hard), Eigen::Matrix3d::Identity());
   double deepest = 0.0;
-  const double far = reach.norm() + 2.0 * rod.rod.length();  // (more than its radius away)
-  if ((rod::position(now.rods[bent.number], 0.0) - pose.p).norm() > far) return 0.0;
+  const rod::Configuration& shape = now.rods[bent.number];
+  int section = -1;
+  double away = 0.0;  // at least so far outside, along one axis of the shape's box, is the axis of that section
   for (std::size_t i = 0; i + 1 < rod.touching.size(); ++i) {
     for (int k = 1; k < kPlacesOfPiece; ++k) {
       const double s = std::lerp(rod.touching[i], rod.touching[i + 1], static_cast<double>(k) / kPlacesOfPiece);
-      const Vec3 local = pose.R.transpose() * (rod::position(now.rods[bent.number], s) - pose.p);
       const double radius = rod::radius_at(rod.rod.profile, s);
-      if ((local.cwiseAbs() - reach).maxCoeff() >= radius) continue;
+      if (const int own = rod.rod.section_at(s); own != section) {
+        section = own;
+        away = outside(pose.R.transpose() * (shape.p[own] - pose.p), reach) - longest(shape, own);
+      }
+      if (away >= radius) continue;
+      const Vec3 local = pose.R.transpose() * (rod::position(shape, s) - pose.p);
+      if (outside(local, reach) >= radius) continue;
       const Simplex part = contact::nearest_part(shape_of(model, hard), local);
       deepest = std::max(deepest, -contact::nearest(contact::point_at(local, radius), part).gap);
     }
