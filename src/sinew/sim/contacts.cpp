@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sinew/sim/contact_search.hpp"
 #include "sinew/sim/places.hpp"
@@ -169,8 +170,10 @@ WeightRange weight_range(const Moment& now, const ContactSide& side, const Simpl
 bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                        const WeightRange& range_a, const WeightRange& range_b, contact::Nearest& found) {
   constexpr double kLiesAlong = 0.3;  // of the distance of the axes times the curvature
-  constexpr int kMostIterations = 10;
+  constexpr int kMostIterations = 20;
   std::array<double, 3>&s = found.a, &t = found.b;
+  std::array<double, 3> s_before = s, t_before = t;
+  double distance = INFINITY;
   const auto move = [](std::array<double, 3>& weights, const WeightRange& range, double by) {
     const double before = weights[1];
     weights[1] = std::clamp(before + by, range.from, range.to);
@@ -181,6 +184,17 @@ bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex
     const LinePoint first = line_point(now, own.a, a, s), second = line_point(now, own.b, b, t);
     const Vec3 apart = first.x - second.x, dx = first.speed * first.tangent, dy = second.speed * second.tangent;
     if (std::max(std::abs(apart.dot(first.bend)), std::abs(apart.dot(second.bend))) > kLiesAlong) return false;
+    // Where curvature jumps, between two sections, whole steps may go to and fro.
+    if (!(apart.norm() <= distance * (1.0 + 1e-12))) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        s[k] = std::midpoint(s[k], s_before[k]);
+        t[k] = std::midpoint(t[k], t_before[k]);
+      }
+      continue;
+    }
+    distance = apart.norm();
+    s_before = s;
+    t_before = t;
     const double aa = dx.squaredNorm(), bb = dy.squaredNorm(), ab = dx.dot(dy), fa = apart.dot(dx), fb = -apart.dot(dy),
                  determinant = aa * bb - ab * ab;
     double moved = 0.0;
