@@ -246,6 +246,18 @@ Pieces put(Random& random, const Model& model, State& state, const Collider& own
   }
 }
 
+/// The least gap of all contacts that are found up to 0.5 m away.
+double least_gap(const Model& model, const State& state) {
+  const StepContext context = make_context(model, state, command_of(model, state), 1e-3);
+  State iterate = state;
+  ContactRoom room;
+  find_contacts(context, iterate, room, 0.5);
+  evaluate_contacts(context, iterate, room);
+  double least = INFINITY;
+  for (const Touch& touch : room.touches) least = std::min(least, touch.nearest.gap);
+  return least;
+}
+
 struct Found {
   double error = 0.0;  ///< [m] largest, of distances of what is apart
   int unseen = 0;      ///< overlaps that are not seen
@@ -276,13 +288,7 @@ Found look_at(Kind first, Kind second, int placements, double bend, unsigned see
         continue;
       }
       if (overlap && expected > promised) ++found.unreal;
-      const StepContext context = make_context(model, state, command_of(model, state), 1e-3);
-      State iterate = state;
-      ContactRoom room;
-      find_contacts(context, iterate, room, 0.5);
-      evaluate_contacts(context, iterate, room);
-      double least = INFINITY;
-      for (const Touch& touch : room.touches) least = std::min(least, touch.nearest.gap);
+      const double least = least_gap(model, state);
       if (expected < 0.45) found.error = std::max(found.error, std::abs(least - expected));
     }
   }
@@ -295,7 +301,7 @@ double promised(Kind first, Kind second, double bend) {
   const bool round = is(Kind::plane) || is(Kind::sphere), triangles = is(Kind::mesh) || is(Kind::solid);
   double error = triangles ? 1e-5 : 1e-6;
   if (is(Kind::cylinder)) error = round ? 1e-5 : first == second ? 1.3e-3 : 7e-4;
-  if (is(Kind::rod) && bend > 0.0) error = std::max(error, is(Kind::cylinder) ? 1.5e-3 : 1e-3);
+  if (is(Kind::rod) && bend > 0.0) error = std::max(error, is(Kind::cylinder) || first == second ? 1.5e-3 : 1e-3);
   return error;
 }
 
@@ -324,6 +330,77 @@ void look_at_all(int placements, unsigned seed) {
 }
 
 TEST(Distances, AreThoseOfAnIndependentComputation) { look_at_all(200, 1); }
+
+// Curvature jumps between two sections: whole steps to the nearest place would go to and fro there.
+TEST(Distances, OfABentRodAndAnEdgeAreLeastWhereCurvatureJumps) {
+  Scene scene;
+  scene.time = {0.001, 1.0};
+  scene.gravity = Vec3::Zero();
+  Rod rod;
+  rod.path = {Vec3(-0.5, 0, 0), Vec3(0.5, 0, 0)};
+  rod.sections = 8;
+  rod.section = Circle{0.05};
+  rod.material = {1e6, 0.4, 1000.0, 0.0};
+  rod.base = {BaseAxis::x, BaseAxis::y, BaseAxis::z, BaseAxis::turn_x, BaseAxis::turn_y, BaseAxis::turn_z};
+  scene.rods.emplace_back("rod", rod);
+  Obstacle box;
+  box.shape = BoxShape{2.0 * Vec3(0.3917, 0.493041, 0.494356)};
+  scene.obstacles.emplace_back("box", box);
+  ContactPair pair;
+  pair.first = "rod";
+  pair.second = "box";
+  scene.contact.pairs.push_back(pair);
+  const Model model = build(scene, mesh_of);
+  State state = initial_state(model);
+  state.rods[0].q << -0.247815, 0.572765, -0.136984, 0, 0, 0,  // where it is; strains of its sections
+      0.145756, 0.697592, 0.498142, -0.675431, -0.280556, -0.140555, 0.376037, 0.026078, 0.517715, 0.041434, 0.432082,
+      -0.908681, 0.234457, 0.577859, 0.642421, 0.590226, -0.963568, -0.897931, 0.672696, 0.652488, -0.162906, -0.154535,
+      -0.253922, 0.023744;
+  state.rods[0].turned << 0.324159, 0.756778, 0.567634, 0.42466, -0.652588, 0.627529, 0.845331, 0.0376315, -0.532916;
+  const StepContext context = make_context(model, state, command_of(model, state), 1e-3);
+  const rod::Configuration shape = rod::configure(model.rods[0].rod, base_of(context, state, 0), state.rods[0].q);
+  const auto& corners = std::get<contact::Convex>(model.obstacles[0].shape).surface.corners;
+  double expected = INFINITY;
+  constexpr int kSamples = 2000;
+  for (int i = 0; i <= kSamples; ++i) {
+    const Vec3 x = rod::position(shape, static_cast<double>(i) / kSamples);
+    expected = std::min(expected, test::distance_of(test::hull_of({x}), test::hull_of(corners)) - 0.05);
+  }
+  EXPECT_NEAR(least_gap(model, state), expected, 1e-6);
+}
+
+// An edge of a solid across the rim of a cylinder, outside of it and inside of the prism that stands for it.
+TEST(Distances, OfAnEdgeOutsideACylinderAndInItsPrism) {
+  constexpr double kRadius = 0.3, kLength = 0.3, kAngle = 0.3 * M_PI / 180.0, kApart = 0.7e-3 * kRadius;
+  Scene scene;
+  scene.time = {0.001, 1.0};
+  scene.gravity = Vec3::Zero();
+  Solid solid;
+  solid.mesh = "solid";
+  solid.material.law = solid::corotational(1e5, 0.3);
+  solid.density = 1000.0;
+  scene.solids.emplace_back("solid", solid);
+  Obstacle cylinder;
+  cylinder.shape = CylinderShape{kRadius, kLength};
+  scene.obstacles.emplace_back("cylinder", cylinder);
+  ContactPair pair;
+  pair.first = "solid";
+  pair.second = "cylinder";
+  scene.contact.pairs.push_back(pair);
+  const Model model = build(scene, mesh_of);
+  State state = initial_state(model);
+  const Vec3 across(std::cos(kAngle), std::sin(kAngle), 0.0), along(-std::sin(kAngle), std::cos(kAngle), 0.0),
+      up = (across + Vec3::UnitZ()).normalized();
+  Eigen::Matrix3d axes;  // the first edge of the block goes down over the rim, the block is above it
+  axes << (across - Vec3::UnitZ()).normalized(), (up + along).normalized(), (up - along).normalized();
+  if (axes.determinant() < 0.0) axes.col(1).swap(axes.col(2));
+  const Eigen::Matrix3Xd& rest = model.solids[0].body.rest;
+  const Vec3 least = rest.rowwise().minCoeff(), most = rest.rowwise().maxCoeff(),
+             foot(std::lerp(least.x(), most.x(), 0.3), least.y(), least.z());
+  const Vec3 at = (kRadius + kApart) * across + 0.5 * kLength * Vec3::UnitZ();
+  state.solids[0].x = (axes * (rest.colwise() - foot)).colwise() + at;
+  EXPECT_NEAR(least_gap(model, state), kApart / std::sqrt(2.0), 0.0015 * kRadius);
+}
 
 // SINEW_PLACEMENTS: of every pair of kinds, and prints the table of docs/contact.md.
 TEST(Distances, AreThoseOfAnIndependentComputationManyTimes_slow) {

@@ -31,6 +31,10 @@ struct Cylinder {
 /// The prism of 48 sides that stands for a cylinder where flat parts meet it.
 Polyhedron prism(const Cylinder& cylinder);
 
+/// How far the edges of its prism stand out of a cylinder at most [1, of its radius]: as both have the same volume,
+/// sqrt(x / sin x) - 1 = 0.00143 with x = pi / 24.
+constexpr double kPrismStandsOut = 1.5e-3;
+
 /// A box or a hull.
 struct Convex {
   Polyhedron surface;

@@ -468,10 +468,13 @@ class Search {
     const double gap = found.gap + a.placed.radius + b.placed.radius;            // of the axes
     if (gap > -1e-6 * start_.model.size || a.side.on == b.side.on) return true;  // (a body is not in itself)
     const auto at = [](const Edge& own, const std::array<double, 3>& weights) {
-      return contact::point_at(weights[0] * own.placed.x[0] + weights[1] * own.placed.x[1], 0.0);
+      return Vec3(weights[0] * own.placed.x[0] + weights[1] * own.placed.x[1]);
     };
-    const auto in = [this](const Collider& body, const Simplex& point) {
-      return body.kind == Kind::rod || depth_in(body, point) > 0.0;
+    const auto in = [this](const Collider& body, const Vec3& point) {
+      if (body.kind == Kind::rod) return true;
+      const auto* cylinder = is_rigid(body) ? std::get_if<contact::Cylinder>(&shape_of(start_.model, body)) : nullptr;
+      const double stands_out = cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
+      return depth_in(body, contact::point_at(point, stands_out)) > 0.0;
     };
     return in(b.side.on, at(a, found.a)) && in(a.side.on, at(b, found.b));
   }
