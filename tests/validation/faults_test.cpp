@@ -100,13 +100,9 @@ void loop_is_held(const char* step) {
   EXPECT_NEAR(run.last("f.x"), 5.61, 0.03);
   EXPECT_NEAR(run.last("f.normal"), 6.4, 0.5);
 }
-TEST(Faults, contact_loop_pulled) {
-  loop_is_held("10 ms");
-  // At 20 ms it may stop, but is never on the other side.
-  EXPECT_GT(fault("contact_loop_pulled", {"time.step=20 ms"}).last("mid.x"), 0.024);
-}
-TEST(Faults, contact_loop_pulled_in_short_steps_slow) {
-  for (const char* step : {"5 ms", "2 ms"}) {
+TEST(Faults, contact_loop_pulled) { loop_is_held("20 ms"); }
+TEST(Faults, contact_loop_pulled_in_other_steps_slow) {
+  for (const char* step : {"40 ms", "10 ms", "5 ms", "2 ms"}) {
     SCOPED_TRACE(step);
     loop_is_held(step);
   }

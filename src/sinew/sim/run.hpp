@@ -9,7 +9,7 @@
 namespace sinew {
 
 /// A step that does not converge is tried again with half the time, this many times at most.
-constexpr int kHalvings = 5;
+constexpr int kHalvings = 8;
 
 /// What a controller says instead of the scene, for the next point of the time grid; null: the scene's own, and what
 /// is driven from outside stays as it is.
