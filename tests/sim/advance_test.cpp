@@ -153,7 +153,23 @@ TEST(Advance, the_grid_covers_the_whole_duration) {
   EXPECT_EQ(grid_steps(scene), 0);
 }
 
-TEST(Advance, halving_ends_after_five_times) {
+TEST(Advance, parts_of_a_step_begin_at_multiples_of_themselves) {
+  const Scene scene = once_linearised_block(1.5, 0.05);
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << trace.failure.detail;
+  int most = 0;
+  for (std::size_t i = 0; i < trace.reports.size(); ++i) {
+    const double part = std::ldexp(scene.time.step, -trace.reports[i].halvings);
+    EXPECT_NEAR(trace.states[i + 1].time - trace.states[i].time, part, 1e-12);
+    const double begins = trace.states[i].time / part;
+    EXPECT_NEAR(begins, std::round(begins), 1e-9) << "after " << trace.reports[i].halvings << " halvings";
+    most = std::max(most, trace.reports[i].halvings);
+  }
+  EXPECT_GE(most, 2);
+}
+
+TEST(Advance, halving_ends) {
   Scene scene = test::cable_block(6 * mm, 0.3);
   scene.newton.limit = 2;
   scene.newton.tolerance = 1e-30;
@@ -161,6 +177,7 @@ TEST(Advance, halving_ends_after_five_times) {
   const test::Trace trace = test::run_all(model);
   EXPECT_EQ(trace.end, RunEnd::stopped);
   EXPECT_EQ(trace.failure.status, Status::max_iterations);
+  EXPECT_EQ(trace.failure.halvings, kHalvings);
   EXPECT_EQ(trace.states.size(), 1u);
 }
 

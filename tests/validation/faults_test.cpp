@@ -102,7 +102,7 @@ void loop_is_held(const char* step) {
 }
 TEST(Faults, contact_loop_pulled) { loop_is_held("20 ms"); }
 TEST(Faults, contact_loop_pulled_in_other_steps_slow) {
-  for (const char* step : {"40 ms", "10 ms", "5 ms", "2 ms"}) {
+  for (const char* step : {"10 ms", "5 ms", "2 ms"}) {
     SCOPED_TRACE(step);
     loop_is_held(step);
   }
@@ -220,16 +220,25 @@ TEST(Faults, cylinder_gains) {
   EXPECT_LT(run.last("energy.kinetic"), 1e-3);
 }
 
-// A rod that falls on a cylinder left with 2.6 times the energy of its fall.
-TEST(Faults, rod_impact_gain) {
-  const RecordedRun run = fault("rod_impact_gain");
+/// That nothing comes from nowhere, beyond this much [J] of what there was at the start.
+void energy_only_goes(const RecordedRun& run, double beyond) {
   ASSERT_TRUE(run.done()) << run.why();
   EXPECT_EQ(run.warning("energy_gain"), nullptr);
   const std::vector<double> kinetic = run.signal("energy.kinetic"), elastic = run.signal("energy.elastic"),
                             weight = run.signal("energy.weight");
-  const double start = kinetic[0] + elastic[0] + weight[0];
-  for (std::size_t i = 0; i < kinetic.size(); ++i) EXPECT_LT(kinetic[i] + elastic[i] + weight[i] - start, 1e-6) << i;
+  double least = INFINITY;
+  for (std::size_t i = 0; i < kinetic.size(); ++i) {
+    const double total = kinetic[i] + elastic[i] + weight[i];
+    EXPECT_LT(total - least, beyond) << i;
+    least = std::min(least, total);
+  }
 }
+
+// A rod that falls on a cylinder left with 2.6 times the energy of its fall.
+TEST(Faults, rod_impact_gain) { energy_only_goes(fault("rod_impact_gain"), 1e-6); }
+
+// A rod had 0.48 mJ more for one step, 72 % of the most that it ever had.
+TEST(Faults, rod_spun_round) { energy_only_goes(fault("rod_spun_round"), 1e-6); }
 
 // Two tubes of rest curvature, one in the other by four ties: "unstable", coming and going with the step.
 TEST(Faults, false_unstable) {

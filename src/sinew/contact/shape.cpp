@@ -293,7 +293,7 @@ Simplex edge_of(const Polyhedron& own, std::size_t e) {
   return segment_at(own.corners[own.edges[e][0]], own.corners[own.edges[e][1]], between.normalized(), 0.0);
 }
 
-Polyhedron prism(const Cylinder& cylinder) { return prism(cylinder.radius, cylinder.length, 48); }
+Polyhedron prism(const Cylinder& cylinder) { return prism(cylinder.radius, cylinder.length, kPrismSides); }
 Skin skin(const Shape& shape, double size) { return std::visit(SkinOf{size}, shape); }
 Simplex nearest_part(const Shape& shape, const Vec3& p, const Vec3& outward) {
   return std::visit(NearestPart{p, outward}, shape);

@@ -28,11 +28,12 @@ struct Cylinder {
   double radius = 0.0, length = 0.0;  ///< [m] > 0
 };
 
-/// The prism of 48 sides that stands for a cylinder where flat parts meet it.
+/// The prism that stands for a cylinder where flat parts meet it, with as much volume.
+constexpr int kPrismSides = 48;
 Polyhedron prism(const Cylinder& cylinder);
 
-/// How far the edges of its prism stand out of a cylinder at most [1, of its radius]: as both have the same volume,
-/// sqrt(x / sin x) - 1 = 0.00143 with x = pi / 24.
+/// How far the edges of its prism stand out of a cylinder at most [1, of its radius]: as their volumes are the same,
+/// sqrt(x / sin x) - 1 = 0.00143 with x = 2 pi / kPrismSides.
 constexpr double kPrismStandsOut = 1.5e-3;
 
 /// A box or a hull.

@@ -21,6 +21,12 @@ struct Moment {
   contact::Simplex placed(const ContactSide& side) const;
 };
 
+/// [m] of the point of a rod's part that these weights of its ends tell.
+inline double abscissa_of(const ContactSide& side, const std::array<double, 3>& weights) {
+  return side.local.corners() == 1 ? side.abscissae[0]
+                                   : weights[0] * side.abscissae[0] + weights[1] * side.abscissae[1];
+}
+
 /// Bodies and obstacles.
 bool is_rigid(const Collider& own);
 

@@ -50,19 +50,13 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
 /// Where the contacts of an iterate are.
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);
 
-/// How the normals of those that press on solids turn, for an exact tangent; not of pieces of rods. (Of contacts that
-/// are evaluated there.)
+/// How the normals of those that press on solids turn, for an exact tangent; not of pieces of rods. `room` must hold
+/// the contacts of this iterate, as `evaluate_contacts` left them.
 void add_contact_curvature(const StepContext& context, const State& iterate, ContactRoom& room);
 
 /// Writes where contacts are into an accepted state, and drops those that are open, but for the nearest of a pair that
 /// is sought and does not touch.
 void finish_contacts(const StepContext& context, const ContactRoom& room, State& next);
-
-/// [m] of the point of a rod's part that these weights of its ends tell.
-inline double abscissa_of(const ContactSide& side, const std::array<double, 3>& weights) {
-  return side.local.corners() == 1 ? side.abscissae[0]
-                                   : weights[0] * side.abscissae[0] + weights[1] * side.abscissae[1];
-}
 
 /// [m] by which a contact of the last iterate overlaps; 0 where it does not. Of a pair that overlapped when the run
 /// began, beyond what it may on its way apart.

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "sinew/sim/contacts.hpp"
-
 namespace sinew {
 
 using Kind = Collider::Kind;
@@ -17,8 +15,8 @@ namespace {
 /// the contact may slide along: zero of a point, at the end of a straight part and at the tips of a rod.
 struct LinePoint {
   Vec3 x, tangent = Vec3::Zero();
-  double speed = 0.0;        ///< [m] of x per unit of the second weight
-  Vec3 bend = Vec3::Zero();  ///< [1/m] how the tangent turns along it
+  double speed = 0.0;          ///< [m] of x per unit of the second weight
+  Vec3 second = Vec3::Zero();  ///< [m] second derivative of x over the second weight
 };
 LinePoint line_point(const Moment& now, const ContactSide& side, const Simplex& placed,
                      const std::array<double, 3>& weights) {
@@ -30,11 +28,11 @@ LinePoint line_point(const Moment& now, const ContactSide& side, const Simplex& 
   }
   if (side.on.kind == Kind::rod) {
     const rod::Configuration& shape = now.rods[side.on.number];
-    const double s = abscissa_of(side, weights);
+    const double s = abscissa_of(side, weights), length = side.abscissae[1] - side.abscissae[0];
     const rod::CentrePoint point = rod::centre_point(shape, s);
     const bool tip = s <= 0.0 || s >= shape.rod->length();
     return {point.position, tip ? Vec3(Vec3::Zero()) : Vec3(point.derivative.normalized()),
-            (side.abscissae[1] - side.abscissae[0]) * point.derivative.norm(), point.second};
+            length * point.derivative.norm(), length * length * point.second};
   }
   const Vec3 along = placed.x[1] - placed.x[0];
   return {placed.x[0] + weights[1] * along, inside ? Vec3(along.normalized()) : Vec3(Vec3::Zero()), along.norm()};
@@ -53,16 +51,20 @@ WeightRange weight_range(const Moment& now, const ContactSide& side, const Simpl
           std::min(1.0 + kBeyond, (now.rods[side.on.number].rod->length() - begin) / length)};
 }
 
-/// Where two parts are nearest within these ranges, one of them a piece of a rod, from where their chords are: Gauss
-/// and Newton's method for min |x_a - x_b|^2. False where a rod lies along a drum of about its own curvature and is
-/// equally near all along.
+/// Where two parts are nearest within these ranges, one of them a piece of a rod, from where their chords are. With d =
+/// x_a(s) - x_b(t), s and t the second weights, Newton's method for min |d|^2 / 2:
+///
+///     gradient  d . x_a',  -d . x_b';      Hessian  [x_a'^2 + d . x_a'',  -x_a' . x_b';  ., x_b'^2 - d . x_b''],
+///
+/// that of Gauss and Newton, without d, where it is not positive definite. Steps that do not shorten d are halved.
+/// False where a rod lies along a drum of about its own curvature and is equally near all along.
 bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                        const WeightRange& range_a, const WeightRange& range_b, contact::Nearest& found) {
-  constexpr double kLiesAlong = 0.3;  // of the distance of the axes times the curvature
+  constexpr double kLiesAlong = 0.3;    // of d . x'' to x'^2
+  constexpr double kSideBySide = 1e-3;  // of the determinant to that of lines across each other
   constexpr int kMostIterations = 20;
   std::array<double, 3>&s = found.a, &t = found.b;
-  std::array<double, 3> s_before = s, t_before = t;
-  double distance = INFINITY;
+  double s_nearest = s[1], t_nearest = t[1], distance = INFINITY;
   const auto put = [](std::array<double, 3>& weights, double weight) {
     weights[0] = 1.0 - weight;
     weights[1] = weight;
@@ -72,30 +74,38 @@ bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex
   };
   for (int i = 0; i < kMostIterations; ++i) {
     const LinePoint first = line_point(now, own.a, a, s), second = line_point(now, own.b, b, t);
-    const Vec3 apart = first.x - second.x, dx = first.speed * first.tangent, dy = second.speed * second.tangent;
-    // Where curvature jumps, between two sections, whole steps may go to and fro.
-    if (!(apart.norm() <= distance * (1.0 + 1e-12))) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        s[k] = std::midpoint(s[k], s_before[k]);
-        t[k] = std::midpoint(t[k], t_before[k]);
-      }
+    const Vec3 d = first.x - second.x, dx = first.speed * first.tangent, dy = second.speed * second.tangent;
+    if (!(d.norm() <= distance * (1.0 + 1e-12))) {
+      put(s, std::midpoint(s[1], s_nearest));
+      put(t, std::midpoint(t[1], t_nearest));
       continue;
     }
-    if (std::max(std::abs(apart.dot(first.bend)), std::abs(apart.dot(second.bend))) > kLiesAlong) return false;
-    distance = apart.norm();
-    s_before = s;
-    t_before = t;
-    const double aa = dx.squaredNorm(), bb = dy.squaredNorm(), ab = dx.dot(dy), fa = apart.dot(dx), fb = -apart.dot(dy),
-                 determinant = aa * bb - ab * ab;
-    // What one may not move by any more changes the step of the other; of lines side by side each moves in turn.
+    const double bends_a = d.dot(first.second), bends_b = -d.dot(second.second);
+    if (std::abs(bends_a) > kLiesAlong * first.speed * first.speed ||
+        std::abs(bends_b) > kLiesAlong * second.speed * second.speed)
+      return false;
+    distance = d.norm();
+    s_nearest = s[1];
+    t_nearest = t[1];
+    const double ab = dx.dot(dy), fa = d.dot(dx), fb = -d.dot(dy);
+    double aa = dx.squaredNorm(), bb = dy.squaredNorm();
+    const double fa_s = aa + bends_a, fb_t = bb + bends_b;
+    if (aa == 0.0 || bb == 0.0 || fa_s * fb_t - ab * ab > kSideBySide * fa_s * fb_t) {
+      aa = aa > 0.0 ? fa_s : 0.0;
+      bb = bb > 0.0 ? fb_t : 0.0;
+    }
+    // If one weight is clamped, the other is minimised again; lines side by side are minimised in turn.
     double ds = 0.0, dt = 0.0;
-    if (determinant > 1e-3 * aa * bb) ds = step_within(range_a, s[1], -(bb * fa + ab * fb) / determinant);
+    if (const double determinant = aa * bb - ab * ab; determinant > kSideBySide * aa * bb)
+      ds = step_within(range_a, s[1], -(bb * fa + ab * fb) / determinant);
     if (bb > 0.0) dt = step_within(range_b, t[1], (ab * ds - fb) / bb);
     if (aa > 0.0) ds = step_within(range_a, s[1], (ab * dt - fa) / aa);
     put(s, s[1] + ds);
     put(t, t[1] + dt);
-    if (std::abs(ds) + std::abs(dt) < 1e-14) break;
+    if (std::abs(ds) + std::abs(dt) < 1e-14) return true;
   }
+  put(s, s_nearest);
+  put(t, t_nearest);
   return true;
 }
 

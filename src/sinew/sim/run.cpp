@@ -32,6 +32,14 @@ StepReport taken(StepResult result, State& state) {
   return report;
 }
 
+/// Of a part of a step of h that begins this far within it, at a multiple of itself.
+int fewest_halvings(double h, double done) {
+  long place = std::lround(std::ldexp(done / h, kHalvings));
+  int halvings = place == 0 ? 0 : kHalvings;
+  for (; place != 0 && place % 2 == 0; place /= 2) --halvings;
+  return halvings;
+}
+
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
   if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
   if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);
@@ -43,10 +51,9 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   Command& command = workspace.memory().command;
   Goal goal;
   StepReport earlier;
-  // Half steps are fractions of the grid's, whatever is left of it after earlier ones.
-  for (int halvings = 0; halvings <= kHalvings; ++halvings) {
+  for (int halvings = fewest_halvings(h, state.time - from); halvings <= kHalvings; ++halvings) {
     const double part = std::ldexp(h, -halvings);
-    if (part > whole * (1.0 + 1e-9)) continue;  // already tried, from further back
+    if (part > whole * (1.0 + 1e-9) && halvings < kHalvings) continue;  // (a time that is no multiple of such a part)
     StepReport report;
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;

@@ -8,8 +8,9 @@
 
 namespace sinew {
 
-/// A step that does not converge is tried again with half the time, this many times at most.
-constexpr int kHalvings = 8;
+/// A step that does not converge is tried again with half the time, this many times at most. Parts of a step begin at
+/// multiples of themselves: they grow again by doubling, and what has just failed is not tried again at once.
+constexpr int kHalvings = 6;
 
 /// What a controller says instead of the scene, for the next point of the time grid; null: the scene's own, and what
 /// is driven from outside stays as it is.

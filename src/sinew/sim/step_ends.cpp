@@ -129,6 +129,20 @@ bool turned_over(const StepContext& context, const State& state) {
   return false;
 }
 
+const RodModel* spun_round(const StepContext& context, const State& next) {
+  if (context.rate == 0.0) return nullptr;
+  for (std::size_t i = 0; i < next.rods.size(); ++i) {
+    const RodModel& model = context.model.rods[i];
+    const RodState &start = context.start.rods[i], &end = next.rods[i];
+    if (end.masses.cols() == 0) continue;
+    bool beyond = model.floats && (start.turned.transpose() * end.turned).trace() < 1.0;  // 1 + 2 cos of the angle
+    for (int k = 0; k < model.rod.base_coordinates() && !model.floats; ++k)
+      beyond |= model.rod.base[k].turns && std::abs(end.q[k] - start.q[k]) > 0.5 * M_PI;
+    if (beyond) return &model;
+  }
+  return nullptr;
+}
+
 const RodModel* exhausted(const Model& model, const State& state) {
   for (std::size_t k = 0; k < model.points.size(); ++k) {
     if (model.points[k].unknown < 0) continue;

@@ -26,6 +26,11 @@ void write_forces(const Linearization& here, State& next);
 /// A tie about an axis whose rows hold, but half a turn off: the step was too long for it.
 bool turned_over(const StepContext& context, const State& state);
 
+/// A rod whose base has turned by more than a right angle in a dynamic step; null if none has. Velocities are the
+/// chords of the step, so a mass point at a distance r from the axis has the angular momentum m r^2 sin(turn) / h:
+/// beyond a right angle a second turn, pi less the first, balances as well, with energy that nothing has put in.
+const RodModel* spun_round(const StepContext& context, const State& next);
+
 /// The first rod whose base end has been pushed in past a sliding point, if any.
 const RodModel* exhausted(const Model& model, const State& state);
 

@@ -30,8 +30,13 @@ def hook(random_: random.Random) -> tuple[Scene, Judge]:
 
     def judge(rows: list[Row], report: Any) -> list[str]:
         told = looks(rows, report)
-        if end_of(report) == "done" and way > y + 0.01 and not any(row["f.contacts"] > 0 for row in rows):
-            told.append("the rod never touches the peg")
+        def touches(those: list[Row]) -> bool:
+            return any(row["f.contacts"] > 0 for row in those)
+
+        if end_of(report) == "done" and way > y + 0.01 and not touches(rows):  # it may swing round the peg
+            shorter, _ = second({**scene, "time": {**scene["time"], "step": 0.1 * h}})
+            if touches(shorter):
+                told.append("the rod never touches the peg")
         return told
 
     return scene, judge
