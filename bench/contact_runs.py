@@ -1,0 +1,349 @@
+#!/usr/bin/env python3
+"""Plain use of contact: which runs go through.
+
+A body of those below is pressed by an obstacle that a frame moves, or comes to lie on one: pulled by a displacement, by
+a force (or a pressure), or by its weight; with and without friction, at rest and in motion, in long and short steps.
+
+    bench/contact_runs.py -o out/contact_runs                    all of them
+    bench/contact_runs.py -o out/contact_runs --only beam10 ball some: words that the names of runs have
+    bench/contact_runs.py --table out/contact_runs/runs.csv      the table of a file of results
+
+Every run is one line of runs.csv: how it ended, why, how far it came, how many steps and iterations it took.
+"""
+
+from __future__ import annotations
+
+import argparse
+import concurrent.futures
+import csv
+import itertools
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable
+
+ROOT = Path(__file__).resolve().parents[1]
+MESHES = ROOT / "examples/meshes"
+Scene = dict[str, Any]
+Vec = tuple[float, float, float]
+
+OBSTACLES = ("post", "wall", "ball", "box", "hull", "mesh")
+DRIVES = ("frame", "displacement", "force", "weight")
+FRICTIONS = (0.0, 0.5)
+STEPS = {"quasi_static": {"long": 0.05, "short": 0.01}, "dynamic": {"long": 0.01, "short": 0.002}}
+DURATION = 1.0  # [s] until all has moved
+TILT = 0.35  # [rad] of a wall, away from where the body is held
+
+
+def write_grid(path: Path, cells: tuple[int, int, int], low: Vec, high: Vec) -> None:
+    """A box of cells, six tetrahedra each."""
+    count = [n + 1 for n in cells]
+    number = {}
+    points = []
+    for i, j, k in itertools.product(*(range(n) for n in count)):
+        number[i, j, k] = len(points)
+        points.append([low[a] + (high[a] - low[a]) * c / cells[a] for a, c in enumerate((i, j, k))])
+    tetrahedra = []
+    for corner in itertools.product(*(range(n) for n in cells)):
+        for axes in itertools.permutations(range(3)):  # along the edges from one corner to the opposite one
+            at = list(corner)
+            nodes = [number[tuple(at)]]
+            for axis in axes:
+                at[axis] += 1
+                nodes.append(number[tuple(at)])
+            odd = axes in ((0, 2, 1), (1, 0, 2), (2, 1, 0))
+            tetrahedra.append([nodes[0], nodes[2], nodes[1], nodes[3]] if odd else nodes)
+    lines = ["# vtk DataFile Version 3.0", "box", "ASCII", "DATASET UNSTRUCTURED_GRID", f"POINTS {len(points)} double"]
+    lines += [" ".join(f"{x:.9g}" for x in p) for p in points]
+    lines += [f"CELLS {len(tetrahedra)} {5 * len(tetrahedra)}"]
+    lines += ["4 " + " ".join(map(str, t)) for t in tetrahedra]
+    lines += [f"CELL_TYPES {len(tetrahedra)}"] + ["10"] * len(tetrahedra)
+    path.write_text("\n".join(lines) + "\n")
+
+
+@dataclass
+class Body:
+    """A body that may be pressed: its scene without contact, and the place of its surface that an obstacle stands
+    before, at `gap`, in direction `out`; `along` is the body's axis."""
+
+    scene: Scene
+    touched: str
+    place: Vec
+    out: Vec
+    along: Vec
+    gap: float  # [m]
+    depth: float  # [m] that an obstacle goes on after it touches
+    displacement: Callable[[Scene], None]
+    force: Callable[[Scene], None]
+
+
+def ramp(value: float) -> dict[str, Any]:
+    return {"times": [0, DURATION], "values": [0, value]}
+
+
+def actuator(name: str, kind: str, value: float) -> Callable[[Scene], None]:
+    def drive(scene: Scene) -> None:
+        scene["actuators"][name][kind] = ramp(value)
+
+    return drive
+
+
+def moved_base(translation: Vec) -> Callable[[Scene], None]:
+    """What holds the body carries it there."""
+
+    def drive(scene: Scene) -> None:
+        scene["frames"] = {"base": {"motion": {"times": [0, DURATION], "translate": [[0, 0, 0], list(translation)]}}}
+        for solid in scene.get("solids", {}).values():
+            solid["fixed"] = [{**solid["fixed"], "frame": "base"}]
+        for rod in scene.get("rods", {}).values():
+            rod["frame"] = "base"
+
+    return drive
+
+
+def beam(cells: tuple[int, int, int]) -> Body:
+    """A cantilever, with a cable above its middle."""
+    solid = {"mesh": "beam{}x{}x{}.vtk".format(*cells), "density": 1070, "rayleigh": {"stiffness": 0.02},
+             "material": {"law": "corotational", "young": 490e3, "poisson": 0.34},
+             "fixed": {"plane": {"point": [0, 0, 0], "normal": [1, 0, 0], "within": 1e-6}}}
+    cable = {"path": [[0, 0, 0.008], [0.1, 0, 0.008]], "sections": 10, "section": {"circle": {"radius": 0.5e-3}},
+             "material": {"young": 1e9, "poisson": 0.4, "density": 1100}}
+    scene = {"solids": {"beam": solid}, "rods": {"cable": cable}, "actuators": {"pull": {"rod": "cable"}},
+             "couplings": [{"slide": {"rod": "cable", "solid": "beam", "points": 9, "anchor_tip": "position"}}],
+             "outputs": {"tip": {"solid": "beam", "point": [0.1, 0, 0]}}}
+    return Body(scene, "beam", (0.09, 0.003, 0.015), (0, 0, 1), (1, 0, 0), 1e-3, 0.03,
+                actuator("pull", "displacement", 4e-3), actuator("pull", "force", 10.0))
+
+
+def example(name: str) -> Scene:
+    import yaml
+
+    return yaml.safe_load((ROOT / "examples" / f"{name}.yaml").read_text())
+
+
+def finger() -> Body:
+    scene = example("finger")
+    del scene["actuators"]["pull"]["displacement"]
+    return Body(scene, "finger", (0.085, 0.0, 0.0075), (0, 0, 1), (1, 0, 0), 3e-3, 0.02,
+                actuator("pull", "displacement", 8e-3), actuator("pull", "force", 6.0))
+
+
+def trunk() -> Body:
+    scene = example("reach")
+    del scene["targets"], scene["newton"]
+    scene["actuators"] = {"pull": {"rod": "right"}}
+    for name in ("back", "left", "front"):
+        del scene["rods"][name]
+    scene["couplings"] = scene["couplings"][:1]
+    return Body(scene, "trunk", (0.0086, 0.0, 0.185), (1, 0, 0), (0, 0, 1), 3e-3, 0.03,
+                actuator("pull", "displacement", 10e-3), actuator("pull", "force", 3.0))
+
+
+def chambers() -> Body:
+    scene = example("chambers")
+    del scene["loads"], scene["outputs"]["root"], scene["outputs"]["wall"]
+    scene["solids"]["bar"]["rayleigh"] = {"stiffness": 0.02}
+
+    def pressure(own: Scene) -> None:
+        own["loads"] = {"air": {"solid": "bar", "group": "chambers", "pressure": 30e3, "factor": ramp(1.0)}}
+
+    return Body(scene, "bar", (0.055, 0.0, -0.008), (0, 0, -1), (1, 0, 0), 1e-3, 0.01, moved_base((0, 0, -0.01)),
+                pressure)
+
+
+def tendon_arm() -> Body:
+    scene = example("tendon_arm")
+    scene["actuators"] = {"side": {"rod": "arm", "tendon": {"distance": "20 mm", "angle": "0 deg"}}}
+    return Body(scene, "arm", (0.5, 0.03, 0.0), (0, 1, 0), (1, 0, 0), 0.01, 0.1,
+                actuator("side", "displacement", 8e-3), actuator("side", "tension", 8.0))
+
+
+def cable() -> Body:
+    rod = {"path": [[0, 0, 0], [0.2, 0, 0]], "sections": 20, "section": {"circle": {"radius": 1e-3}},
+           "material": {"young": 20e6, "poisson": 0.4, "density": 1100, "damping": "10 ms"}}
+
+    def tip_force(own: Scene) -> None:
+        own["loads"] = {"push": {"rod": "cable", "at": 0.2, "force": [0, 0, -0.02], "factor": ramp(1.0)}}
+
+    return Body({"rods": {"cable": rod}, "outputs": {"tip": {"rod": "cable", "at": 0.2}}}, "cable", (0.15, 0.0, -1e-3),
+                (0, 0, -1), (1, 0, 0), 2e-3, 0.03, moved_base((0, 0, -0.03)), tip_force)
+
+
+BODIES: dict[str, Callable[[], Body]] = {
+    "beam6": lambda: beam((6, 2, 2)), "beam10": lambda: beam((10, 3, 3)), "beam16": lambda: beam((16, 5, 5)),
+    "finger": finger, "trunk": trunk, "chambers": chambers, "tendon_arm": tendon_arm, "cable": cable,
+}
+
+
+def cross(a: Vec, b: Vec) -> Vec:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def turn_z_to(axis: Vec) -> list[float]:
+    """The rotation vector that brings z there."""
+    about = cross((0.0, 0.0, 1.0), axis)
+    sine = math.hypot(*about)
+    angle = math.atan2(sine, axis[2])
+    if sine < 1e-12:
+        return [angle, 0.0, 0.0]
+    return [angle * x / sine for x in about]
+
+
+def obstacle(kind: str, body: Body) -> Scene:
+    """An obstacle that is `gap` away from the place that it is to touch."""
+    size = 0.1 if body.touched == "arm" else 0.02
+    side = cross(body.along, body.out)
+    shapes = {
+        "post": ({"capsule": {"radius": 0.4 * size, "length": 10 * size}}, side, 0.4 * size),
+        "wall": ({"plane": {"normal": [-math.cos(TILT) * n - math.sin(TILT) * t for n, t in zip(body.out, body.along)]}},
+                 (0.0, 0.0, 1.0), 0.0),
+        "ball": ({"sphere": {"radius": 0.6 * size}}, (0.0, 0.0, 1.0), 0.6 * size),
+        "box": ({"box": {"size": [1.5 * size] * 3}}, (0.0, 0.0, 1.0), 0.75 * size),
+        "hull": ({"mesh": {"file": "ring.stl", "scale": 0.05 * size, "hull": True}}, side, 1.75 * size),
+        "mesh": ({"mesh": {"file": "ring.stl", "scale": 0.05 * size}}, side, 1.75 * size),
+    }
+    shape, axis, reach = shapes[kind]
+    far = body.gap + reach
+    pose = {"rotate": turn_z_to(axis), "translate": [p + far * n for p, n in zip(body.place, body.out)]}
+    return {**shape, "pose": pose}
+
+
+def scene_of(body_name: str, kind: str, drive: str, friction: float, analysis: str, step: float) -> Scene:
+    body = BODIES[body_name]()
+    scene = body.scene
+    scene["analysis"] = analysis
+    scene["time"] = {"step": step, "duration": DURATION if analysis == "quasi_static" else 1.5 * DURATION}
+    scene["gravity"] = [9.81 * n for n in body.out] if drive == "weight" else [0, 0, 0]
+    scene["view"] = {"interval": 1000}
+    scene["contact"] = {"friction": friction}
+    scene["obstacles"] = {"hard": obstacle(kind, body)}
+    inside = [rod for rod in scene.get("rods", {}) if rod != body.touched]
+    scene["contact"]["pairs"] = [{"between": [body.touched, "hard"]},
+                                 *({"between": [rod, "hard"], "off": True} for rod in inside)]
+    scene["outputs"]["press"] = {"between": [body.touched, "hard"]}
+    if drive == "frame":
+        way = [-(body.gap + body.depth) * n for n in body.out]
+        scene["frames"] = {"hand": {"motion": {"times": [0, DURATION], "translate": [[0, 0, 0], way]}}}
+        scene["obstacles"]["hard"]["frame"] = "hand"
+    elif drive == "displacement":
+        body.displacement(scene)
+    elif drive == "force":
+        body.force(scene)
+    if drive not in ("displacement", "force"):
+        if "actuators" in scene:  # what pulls nothing stays loose
+            for one in scene["actuators"].values():
+                one["tension" if "tendon" in one else "force"] = 0.0
+    return scene
+
+
+def names() -> list[tuple[str, str, str, float, str, str]]:
+    return [(body, kind, drive, friction, analysis, step)
+            for body, kind, drive, friction, analysis in itertools.product(BODIES, OBSTACLES, DRIVES, FRICTIONS, STEPS)
+            for step in STEPS[analysis]]
+
+
+COLUMNS = ("body", "obstacle", "drive", "friction", "analysis", "step", "end", "status", "reached", "steps", "iterations",
+           "contacts", "force", "tip", "seconds", "detail")
+
+
+def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path, limit: float) -> dict[str, Any]:
+    body, kind, drive, friction, analysis, step = name
+    scene = scene_of(body, kind, drive, friction, analysis, STEPS[analysis][step])
+    title = "-".join(str(part) for part in name)
+    (folder / f"{title}.yaml").write_text(json.dumps(scene, indent=1))
+    out = folder / title
+    row: dict[str, Any] = dict(zip(COLUMNS, name))
+    begin = time.time()
+    try:
+        done = subprocess.run([program, "run", folder / f"{title}.yaml", "-o", out, "--quiet", "--force", "--threads", "1"],
+                              capture_output=True, text=True, timeout=limit)
+        row["end"] = {0: "done", 3: "stopped"}.get(done.returncode, f"exit {done.returncode}")
+        row["detail"] = " ".join(done.stderr.split())[-200:] if done.returncode else ""
+    except subprocess.TimeoutExpired:
+        row["end"], row["detail"] = "time", f"not through after {limit:g} s"
+    row["seconds"] = round(time.time() - begin, 2)
+    row["status"] = ""
+    if (out / "signals.csv").exists():
+        with open(out / "signals.csv", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        if rows:
+            last = rows[-1]
+            row.update(reached=float(last["time"]) / scene["time"]["duration"], steps=len(rows) - 1,
+                       iterations=sum(int(own["newton"] or 0) for own in rows),
+                       contacts=max(int(float(own["press.contacts"])) for own in rows),
+                       force=f"{float(last['press.normal']):.4g}",
+                       tip=" ".join(f"{float(last['tip.' + axis]):.5f}" for axis in "xyz"))
+    if (out / "report.json").exists():
+        row["status"] = json.loads((out / "report.json").read_text())["end"].get("status", "")
+    subprocess.run(["rm", "-rf", out], check=False)
+    return row
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """Of runs that went through, of all, for each body and way to press it."""
+    count: Counter[tuple[str, str, str]] = Counter()
+    done: Counter[tuple[str, str, str]] = Counter()
+    for row in rows:
+        key = (row["body"], row["analysis"], row["drive"])
+        count[key] += 1
+        done[key] += row["end"] == "done"
+    columns = [(analysis, drive) for analysis in STEPS for drive in DRIVES]
+    lines = ["| body | " + " | ".join(f"{a}, {d}" for a, d in columns) + " |", "|---" * (len(columns) + 1) + "|"]
+    for body in BODIES:
+        cells = [f"{done[body, a, d]} of {count[body, a, d]}" if count[body, a, d] else "" for a, d in columns]
+        lines.append(f"| {body} | " + " | ".join(cells) + " |")
+    through = sum(row["end"] == "done" for row in rows)
+    lines.append(f"\n{through} of {len(rows)} ({100.0 * through / max(1, len(rows)):.1f} %) went through.")
+    ends = Counter((row["end"], row["status"]) for row in rows if row["end"] != "done")
+    lines += [f"{number} {end} {status}" for (end, status), number in ends.most_common()]
+    missed = sum(row["end"] == "done" and not int(row["contacts"] or 0) for row in rows)
+    lines.append(f"{missed} of those that went through never touched.")
+    return "\n".join(lines)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", type=Path, default=Path("out/contact_runs"))
+    parser.add_argument("--program", default=str(ROOT / "build/release/sinew"))
+    parser.add_argument("--only", nargs="*", default=[], help="words, each of which is in the names of the runs")
+    parser.add_argument("--every", type=int, default=1, help="take every n-th run only")
+    parser.add_argument("--limit", type=float, default=120.0, help="[s] that a run may take")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--table", type=Path, help="print the table of these results, and run nothing")
+    arguments = parser.parse_args()
+    if arguments.table:
+        with open(arguments.table, newline="") as stream:
+            print(table(list(csv.DictReader(stream))))
+        return 0
+    chosen = [name for name in names() if all(word in map(str, name) for word in arguments.only)][::arguments.every]
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for mesh in ("finger.vtk", "trunk.vtk", "chambers.msh", "ring.stl"):
+        (arguments.output / "meshes").mkdir(exist_ok=True)
+        for folder in (arguments.output, arguments.output / "meshes"):
+            (folder / mesh).write_bytes((MESHES / mesh).read_bytes())
+    for cells in ((6, 2, 2), (10, 3, 3), (16, 5, 5)):
+        write_grid(arguments.output / "beam{}x{}x{}.vtk".format(*cells), cells, (0, -0.015, -0.015), (0.1, 0.015, 0.015))
+    rows = []
+    with open(arguments.output / "runs.csv", "w", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS, restval="")
+        writer.writeheader()
+        with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+            work = lambda name: run(name, arguments.program, arguments.output, arguments.limit)  # noqa: E731
+            for number, row in enumerate(pool.map(work, chosen), 1):
+                rows.append(row)
+                writer.writerow(row)
+                stream.flush()
+                if sys.stderr.isatty():
+                    print(f"\r{number} of {len(chosen)}", end="", file=sys.stderr)
+    print(table(rows))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
