@@ -20,6 +20,7 @@ import itertools
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -28,7 +29,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "scripts"))
+from box_meshes import boxes, write_vtk  # noqa: E402
+
 MESHES = ROOT / "examples/meshes"
 Scene = dict[str, Any]
 Vec = tuple[float, float, float]
@@ -39,32 +45,6 @@ FRICTIONS = (0.0, 0.5)
 STEPS = {"quasi_static": {"long": 0.05, "short": 0.01}, "dynamic": {"long": 0.01, "short": 0.002}}
 DURATION = 1.0  # [s] until all has moved
 TILT = 0.35  # [rad] of a wall, away from where the body is held
-
-
-def write_grid(path: Path, cells: tuple[int, int, int], low: Vec, high: Vec) -> None:
-    """A box of cells, six tetrahedra each."""
-    count = [n + 1 for n in cells]
-    number = {}
-    points = []
-    for i, j, k in itertools.product(*(range(n) for n in count)):
-        number[i, j, k] = len(points)
-        points.append([low[a] + (high[a] - low[a]) * c / cells[a] for a, c in enumerate((i, j, k))])
-    tetrahedra = []
-    for corner in itertools.product(*(range(n) for n in cells)):
-        for axes in itertools.permutations(range(3)):  # along the edges from one corner to the opposite one
-            at = list(corner)
-            nodes = [number[tuple(at)]]
-            for axis in axes:
-                at[axis] += 1
-                nodes.append(number[tuple(at)])
-            odd = axes in ((0, 2, 1), (1, 0, 2), (2, 1, 0))
-            tetrahedra.append([nodes[0], nodes[2], nodes[1], nodes[3]] if odd else nodes)
-    lines = ["# vtk DataFile Version 3.0", "box", "ASCII", "DATASET UNSTRUCTURED_GRID", f"POINTS {len(points)} double"]
-    lines += [" ".join(f"{x:.9g}" for x in p) for p in points]
-    lines += [f"CELLS {len(tetrahedra)} {5 * len(tetrahedra)}"]
-    lines += ["4 " + " ".join(map(str, t)) for t in tetrahedra]
-    lines += [f"CELL_TYPES {len(tetrahedra)}"] + ["10"] * len(tetrahedra)
-    path.write_text("\n".join(lines) + "\n")
 
 
 @dataclass
@@ -109,7 +89,7 @@ def moved_base(translation: Vec) -> Callable[[Scene], None]:
 
 def beam(cells: tuple[int, int, int]) -> Body:
     """A cantilever, with a cable above its middle."""
-    solid = {"mesh": "beam{}x{}x{}.vtk".format(*cells), "density": 1070, "rayleigh": {"stiffness": 0.02},
+    solid = {"mesh": "beam{}x{}x{}.vtk".format(*cells), "scale": 0.001, "density": 1070, "rayleigh": {"stiffness": 0.02},
              "material": {"law": "corotational", "young": 490e3, "poisson": 0.34},
              "fixed": {"plane": {"point": [0, 0, 0], "normal": [1, 0, 0], "within": 1e-6}}}
     cable = {"path": [[0, 0, 0.008], [0.1, 0, 0.008]], "sections": 10, "section": {"circle": {"radius": 0.5e-3}},
@@ -235,10 +215,9 @@ def scene_of(body_name: str, kind: str, drive: str, friction: float, analysis: s
         body.displacement(scene)
     elif drive == "force":
         body.force(scene)
-    if drive not in ("displacement", "force"):
-        if "actuators" in scene:  # what pulls nothing stays loose
-            for one in scene["actuators"].values():
-                one["tension" if "tendon" in one else "force"] = 0.0
+    if drive in ("frame", "weight"):
+        for one in scene.get("actuators", {}).values():  # stay loose
+            one["tension" if "tendon" in one else "force"] = 0.0
     return scene
 
 
@@ -281,7 +260,7 @@ def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path,
                        tip=" ".join(f"{float(last['tip.' + axis]):.5f}" for axis in "xyz"))
     if (out / "report.json").exists():
         row["status"] = json.loads((out / "report.json").read_text())["end"].get("status", "")
-    subprocess.run(["rm", "-rf", out], check=False)
+    shutil.rmtree(out, ignore_errors=True)
     return row
 
 
@@ -328,7 +307,8 @@ def main() -> int:
         for folder in (arguments.output, arguments.output / "meshes"):
             (folder / mesh).write_bytes((MESHES / mesh).read_bytes())
     for cells in ((6, 2, 2), (10, 3, 3), (16, 5, 5)):
-        write_grid(arguments.output / "beam{}x{}x{}.vtk".format(*cells), cells, (0, -0.015, -0.015), (0.1, 0.015, 0.015))
+        nodes, tetrahedra = boxes(np.array(cells), np.array([100.0, 30.0, 30.0]), lambda x, y, z: True)
+        write_vtk(arguments.output / "beam{}x{}x{}.vtk".format(*cells), "beam, mm", nodes - [0, 15, 15], tetrahedra)
     rows = []
     with open(arguments.output / "runs.csv", "w", newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS, restval="")

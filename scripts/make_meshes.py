@@ -12,6 +12,8 @@ import sys
 import gmsh
 import numpy as np
 
+from box_meshes import boxes, write_vtk
+
 # Finger: a profile in the x-z plane, extruded along y. x = 0 at the base, the spine is at the bottom (low z), the ribs
 # stand on it and are open at the top, towards which a cable through them bends the finger.
 WIDTH = 15.0  # along y and along z
@@ -112,36 +114,6 @@ def chambers():
     on = lambda axis, value: (np.abs(at[:, :, axis] - value) < 1e-9).all(axis=1)
     outside = on(0, 0) | on(0, 60) | on(1, -8) | on(1, 8) | on(2, -8) | on(2, 8)
     return nodes, cells, {"root": outer[on(0, 0)], "chambers": outer[~outside]}
-
-
-def boxes(n, size, keep):
-    """Nodes and tetrahedra of the boxes of a grid that are kept, six each."""
-    k, j, i = np.meshgrid(*(np.arange(m + 1) for m in n[::-1]), indexing="ij")
-    nodes = np.stack([i.ravel(), j.ravel(), k.ravel()], axis=1) / n * size
-    number = lambda i, j, k: (k * (n[1] + 1) + j) * (n[0] + 1) + i
-    cells = []
-    for z in range(n[2]):
-        for y in range(n[1]):
-            for x in range(n[0]):
-                if not keep(x, y, z):
-                    continue
-                corner = [number(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2 & 1)) for c in range(8)]
-                ring = [1, 3, 2, 6, 4, 5, 1]  # around the diagonal from corner 0 to corner 7
-                for a, b in zip(ring, ring[1:]):
-                    cell = [corner[0], corner[a], corner[b], corner[7]]
-                    edges = nodes[cell[1:]] - nodes[cell[0]]
-                    cells.append(cell if np.linalg.det(edges) > 0 else [cell[0], cell[2], cell[1], cell[3]])
-    return nodes, np.array(cells)
-
-
-def write_vtk(path, title, nodes, cells):
-    with open(path, "w", encoding="ascii", newline="\n") as file:
-        file.write(f"# vtk DataFile Version 2.0\n{title}\nASCII\nDATASET UNSTRUCTURED_GRID\n")
-        file.write(f"POINTS {len(nodes)} double\n")
-        file.writelines(" ".join(f"{x:.6f}".rstrip("0").rstrip(".") for x in node) + "\n" for node in nodes)
-        file.write(f"CELLS {len(cells)} {5 * len(cells)}\n")
-        file.writelines(f"4 {a} {b} {c} {d}\n" for a, b, c, d in cells)
-        file.write(f"CELL_TYPES {len(cells)}\n" + "10\n" * len(cells))
 
 
 def write_msh(path, nodes, cells, groups):

@@ -312,7 +312,7 @@ Found look_at(Kind first, Kind second, int placements, double bend, unsigned see
   return found;
 }
 
-/// The largest error that docs/contact.md promises [m].
+/// The largest error that docs/contact.md promises [m]; where two bent rods lie along each other both chords are off.
 double promised(Kind first, Kind second, double bend) {
   const auto is = [&](Kind kind) { return first == kind || second == kind; };
   const bool round = is(Kind::plane) || is(Kind::sphere), triangles = is(Kind::mesh) || is(Kind::solid);

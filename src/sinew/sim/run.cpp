@@ -1,5 +1,6 @@
 #include "sinew/sim/run.hpp"
 
+#include <bit>
 #include <cmath>
 
 #include "sinew/sim/clock.hpp"
@@ -34,10 +35,8 @@ StepReport taken(StepResult result, State& state) {
 
 /// Of a part of a step of h that begins this far within it, at a multiple of itself.
 int fewest_halvings(double h, double done) {
-  long place = std::lround(std::ldexp(done / h, kHalvings));
-  int halvings = place == 0 ? 0 : kHalvings;
-  for (; place != 0 && place % 2 == 0; place /= 2) --halvings;
-  return halvings;
+  const auto place = static_cast<unsigned>(std::lround(std::ldexp(done / h, kHalvings)));
+  return place == 0 ? 0 : kHalvings - std::countr_zero(place);
 }
 
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {

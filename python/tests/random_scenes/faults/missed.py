@@ -30,6 +30,7 @@ def hook(random_: random.Random) -> tuple[Scene, Judge]:
 
     def judge(rows: list[Row], report: Any) -> list[str]:
         told = looks(rows, report)
+
         def touches(those: list[Row]) -> bool:
             return any(row["f.contacts"] > 0 for row in those)
 
