@@ -48,11 +48,15 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const bool on_grid = state.time == from;
   const double whole = on_grid ? h : to - state.time;
   Command& command = workspace.memory().command;
+  const bool inverse = !model.effectors.empty() && !told.forward;
+  const int fewest = fewest_halvings(h, state.time - from);
+  // With contacts an equilibrium has been looked for along parts of the step already.
+  const int most = equilibrium && !inverse && !model.pairs.empty() ? fewest : kHalvings;
   Goal goal;
   StepReport earlier;
-  for (int halvings = fewest_halvings(h, state.time - from); halvings <= kHalvings; ++halvings) {
+  for (int halvings = fewest; halvings <= most; ++halvings) {
     const double part = std::ldexp(h, -halvings);
-    if (part > whole * (1.0 + 1e-9) && halvings < kHalvings) continue;  // (a time that is no multiple of such a part)
+    if (part > whole * (1.0 + 1e-9) && halvings < most) continue;  // (a time that is no multiple of such a part)
     StepReport report;
     const bool lands = part >= whole * (1.0 - 1e-9);
     const double time = lands ? to : state.time + part;
@@ -62,7 +66,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     else
       scene_command(model, state, to, command);
     if (!lands) command = between(command_of(model, state), command, part / whole);
-    if (!model.effectors.empty() && !told.forward) {
+    if (inverse) {
       if (told.goal)
         goal = *told.goal;
       else

@@ -24,6 +24,9 @@ constexpr int kMostDetours = 200;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 /// Of its load, brought on by parts where contacts make kinks in a path.
 constexpr double kSmallestPart = 1.0 / 256.0;
+/// Iterations that a quasi-static step may take with all its parts, in multiples of `newton.limit`: beyond them it is
+/// given up, so that no step thinks for minutes.
+constexpr int kMostWork = 64;
 
 /// What is prescribed along a path: all of it grows linearly from one end to the other.
 struct Ramp {
@@ -212,12 +215,13 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   };
 
   NewtonRules rules = whole_steps(model);
+  const int most = kMostWork * rules.limit;
   rules.limit = std::min(rules.limit, kMostIterations);
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
   if (!sound(end)) {
     Iterate on{state, 0.0};
-    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches; ++i) {
+    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < most; ++i) {
       Reached next = path_step(model, memory, ramp, on);
       add_effort(next.report, spent);
       const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
@@ -225,7 +229,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
     }
-    for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart;) {
+    for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart && spent.newton < most;) {
       Reached next = go(on.state, std::min(on.t + part, 1.0), rules);
       add_effort(next.report, spent);
       if (!sound(next)) {
@@ -241,6 +245,12 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       Reached minimum = go(on.state, 1.0, rules);
       add_effort(minimum.report, spent);
       if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
+      if (end.report.status == Status::max_iterations && end.report.detail.empty()) {
+        char text[80];
+        std::snprintf(text, sizeof text, "it came as far as %.3g %% of the step in %d iterations", 100.0 * on.t,
+                      spent.newton);
+        end.report.detail = text;
+      }
     }
   }
   end.report.newton = spent.newton;
