@@ -166,13 +166,8 @@ def cross(a: Vec, b: Vec) -> Vec:
 
 
 def turn_z_to(axis: Vec) -> list[float]:
-    """The rotation vector that brings z there."""
-    about = cross((0.0, 0.0, 1.0), axis)
-    sine = math.hypot(*about)
-    angle = math.atan2(sine, axis[2])
-    if sine < 1e-12:
-        return [angle, 0.0, 0.0]
-    return [angle * x / sine for x in about]
+    """The angles about x and then about y that bring z to a unit vector."""
+    return [-math.asin(max(-1.0, min(1.0, axis[1]))), math.atan2(axis[0], axis[2]), 0.0]
 
 
 def obstacle(kind: str, body: Body) -> Scene:

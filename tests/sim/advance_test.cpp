@@ -169,6 +169,30 @@ TEST(Advance, parts_of_a_step_begin_at_multiples_of_themselves) {
   EXPECT_GE(most, 2);
 }
 
+// Times are rounded: no step of 1e-12 s may be left at the end of what was halved.
+TEST(Advance, parts_end_on_the_grid_late_in_a_run) {
+  const Scene scene = once_linearised_block(50.0, 0.05);  // so much that the block goes no further than a 64th
+  const Model model = build(scene, test::read_block);
+  Workspace workspace = make_workspace(model);
+  const double smallest = std::ldexp(scene.time.step, -kHalvings);
+  for (long grid = 40960; grid < 60000; grid += 1901) {
+    State state = initial_state(model);
+    state.loads = {1.0};
+    state.grid = grid;
+    state.time = static_cast<double>(grid) * scene.time.step;
+    for (int part = 0; part < 1 << kHalvings; ++part) {
+      State next = state;
+      const StepReport report = advance(model, workspace, next);
+      ASSERT_TRUE(accepted(report.status)) << report.detail;
+      EXPECT_NEAR(next.time - state.time, smallest, 1e-3 * smallest) << grid << ", part " << part;
+      state.grid = next.grid;  // (the block begins each part at rest)
+      state.time = next.time;
+    }
+    EXPECT_EQ(state.grid, grid + 1);
+    EXPECT_EQ(state.time, static_cast<double>(grid + 1) * scene.time.step);
+  }
+}
+
 TEST(Advance, halving_ends) {
   Scene scene = test::cable_block(6 * mm, 0.3);
   scene.newton.limit = 2;

@@ -165,6 +165,22 @@ TEST(LoneRod, spinning_base_keeps_its_angular_momentum_law) {
   EXPECT_NEAR(trace.states.back().rods[0].q[0], 0.1 * 1e-4 * 55, 1e-8);
 }
 
+TEST(LoneRod, a_driven_turn_may_be_beyond_a_right_angle_in_a_step) {
+  Scene scene = test::lone_rod(1000.0, 1);
+  Actuator motor;
+  motor.rod = "rod";
+  motor.motion = Motion::rotation;
+  motor.driven = Driven::angle;
+  motor.drive = Table{{0.0, 0.2}, {0.0, 40.0}};
+  motor.axis = 2;
+  scene.actuators.emplace_back("motor", motor);
+  scene.time = {0.01, 0.2};
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done);
+  for (const StepReport& report : trace.reports) EXPECT_EQ(report.halvings, 0);
+}
+
 TEST(LoneRod, massless_rods_are_legal) {
   Scene scene = test::lone_rod(0.0, 4);
   scene.gravity = Vec3(0, 0, -9.81);

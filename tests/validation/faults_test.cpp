@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 
@@ -234,6 +235,16 @@ void energy_only_goes(const RecordedRun& run, double beyond) {
   }
 }
 
+// A cylinder that overlapped the floor by 14 micrometres at the start sank in by 130 mm.
+TEST(Faults, cylinder_sinks) {
+  const RecordedRun run = fault("cylinder_sinks");
+  for (const double z : run.signal("wheel.z")) EXPECT_GT(z, 5e-3);
+  if (run.done()) {
+    EXPECT_GT(run.last("wheel.z"), 9.9e-3);
+    EXPECT_LT(run.last("wheel.x"), 0.29);
+  }
+}
+
 // A rod that falls on a cylinder left with 2.6 times the energy of its fall.
 TEST(Faults, rod_impact_gain) { energy_only_goes(fault("rod_impact_gain"), 1e-6); }
 
@@ -247,6 +258,52 @@ TEST(Faults, false_unstable) {
     ASSERT_TRUE(run.done()) << run.why();
     EXPECT_EQ(run.warning("unstable"), nullptr) << step;
   }
+}
+
+// The spin of a weight that hangs from a joint, which nothing resists: "unstable" by the sign of rounding.
+TEST(Faults, weight_hangs) {
+  for (const char* analysis : {"static", "quasi_static", "modal"}) {
+    for (const char* young : {"1 GPa", "100 MPa", "10 MPa"}) {
+      const RecordedRun run =
+          fault("weight_hangs", {std::string("analysis=") + analysis, std::string("rods.arm.material.young=") + young});
+      ASSERT_TRUE(run.done()) << run.why();
+      EXPECT_EQ(run.warning("unstable"), nullptr) << analysis << ", " << young;
+      EXPECT_TRUE(run.warning("free_motion", "bodies.weight")) << analysis << ", " << young;
+    }
+  }
+}
+
+// A cable pulled by a told displacement, its tip held twice: "nothing resists a motion of its base".
+TEST(Faults, anchored_and_tied) {
+  for (const char* analysis : {"static", "quasi_static"}) {
+    const RecordedRun run = fault("anchored_and_tied", {std::string("analysis=") + analysis});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_TRUE(run.warning("redundant_constraints"));
+    EXPECT_EQ(run.warning("free_motion"), nullptr);
+  }
+}
+
+// Modes of a massless beam with a ball at its tip: -2.9e19 Hz.
+TEST(Faults, massless_rod_carries_body) {
+  const RecordedRun run = fault("massless_rod_carries_body");
+  ASSERT_TRUE(run.done()) << run.why();
+  // 3 EI / L^3, 6 EI / L^2 and 4 EI / L at the centre of the ball, and G J / L.
+  constexpr double kLength = 0.3, kRadius = 5e-3, kYoung = 1e6, kMass = 0.1, kBall = 0.01;
+  constexpr double kArea = std::numbers::pi * kRadius * kRadius * kRadius * kRadius / 4.0;
+  constexpr double kInertia = 0.4 * kMass * kBall * kBall, kBending = kYoung * kArea;
+  Eigen::Matrix2d stiffness, mass;
+  stiffness << 12.0, -6.0 * kLength, -6.0 * kLength, 4.0 * kLength * kLength;
+  stiffness *= kBending / (kLength * kLength * kLength);
+  mass << kMass, 0.0, 0.0, kInertia;
+  const Eigen::Vector2d squares =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(stiffness, mass).eigenvalues();
+  const double twist = std::sqrt(kYoung / 3.0 * 2.0 * kArea / kLength / kInertia);
+  const std::vector<double> frequencies = run.signal("mode.frequency");
+  ASSERT_EQ(frequencies.size(), 6u);
+  const double expected[] = {std::sqrt(squares[0]), std::sqrt(squares[0]), twist, std::sqrt(squares[1]),
+                             std::sqrt(squares[1])};
+  for (int i = 0; i < 5; ++i)
+    EXPECT_NEAR(frequencies[static_cast<std::size_t>(i) + 1] * 2.0 * std::numbers::pi, expected[i], 1e-6 * expected[i]);
 }
 
 // "The path turned back, there is no equilibrium", after 3000 steps at 73 % of the load.

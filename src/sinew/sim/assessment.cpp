@@ -185,8 +185,8 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
   }
 }
 
-/// Bases of rods that an equilibrium leaves free: they stand where they came by chance. (Those that contacts press on
-/// may be held by these.)
+/// Bases of rods and bodies that an equilibrium leaves free: they stand where they came by chance. (Those that contacts
+/// press on may be held by these.)
 void assess_free(const Model& model, const Linearization& here, const State& state, Warnings& warnings) {
   constexpr const char* kAxes = "xyz";
   const std::vector<int>& unresisted = here.unresisted();
@@ -204,6 +204,16 @@ void assess_free(const Model& model, const Linearization& here, const State& sta
                   .where = "rods." + rod.name,
                   .message = "nothing resists a motion of its base (" + motions + "): where it rests is chance",
                   .remedy = "leave that out of its `base`, or hold it by a tie that has this axis"});
+  }
+  for (int i = 0; i < static_cast<int>(model.bodies.size()) && !unresisted.empty(); ++i) {
+    const BodyModel& body = model.bodies[i];
+    if (is_pressed(state, {Collider::Kind::body, i})) continue;
+    const auto own = [&](int unknown) { return unknown >= body.unknown && unknown < body.unknown + 6; };
+    if (std::none_of(unresisted.begin(), unresisted.end(), own)) continue;
+    warnings.add({.code = "free_motion",
+                  .where = "bodies." + body.name,
+                  .message = "nothing resists one of its motions: where it rests is chance",
+                  .remedy = "hold it by a tie that has this axis"});
   }
 }
 
@@ -300,7 +310,8 @@ Loose loose_energy(const Model& model, const State& state) {
 
 bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& room) {
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
-    if (model.pairs[iterate.contacts[i].pair].depth > 0.0 && room.gaps[i] < -1e-6 * model.size) return true;
+    const double at_start = model.pairs[iterate.contacts[i].pair].depth;
+    if (room.gaps[i] < -1e-6 * model.size && room.gaps[i] >= -at_start) return true;
   }
   return false;
 }
@@ -324,8 +335,10 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
 
 std::string describe_contradiction(const Model& model, const RedundantRows& rows, const Eigen::VectorXd& c) {
   const std::vector<int> which = rows.contradicting(c);
-  return name_of_rows(model, which) + " contradict each other by " + three_digits(1e3 * rows.contradiction(c)) +
-         " mm; " + remedy_of_rows(model, which);
+  const std::string names = name_of_rows(model, which);
+  const bool several = names.find(", ") != std::string::npos;
+  return (several ? names : "the rows of " + names) + " contradict each other by " +
+         three_digits(1e3 * rows.contradiction(c)) + " mm; " + remedy_of_rows(model, which);
 }
 
 }  // namespace sinew

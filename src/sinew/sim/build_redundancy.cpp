@@ -103,14 +103,19 @@ void look_for_redundant_rows(Model& model, const State& start) {
     const RedundantRows own = redundant_rows(model, start, reduced.problem, rows);
     if (rows.size() == 1) continue;  // of a row that nothing answers (`warn_of_idle_rows`)
     const auto count = own.null.cols();
-    model.warnings.push_back({.code = "redundant_constraints",
-                              .where = name_of_rows(model, rows),
-                              .message = std::to_string(rows.size()) +
-                                         " constraint rows depend on each other: the strains can answer only " +
-                                         std::to_string(static_cast<long>(rows.size()) - static_cast<long>(count)) +
-                                         " of them; of the forces that do the same, the smallest are taken",
-                              .remedy = remedy_of_rows(model, rows),
-                              .value = static_cast<double>(count)});
+    Warning warning{.code = "redundant_constraints",
+                    .where = name_of_rows(model, rows),
+                    .message = std::to_string(rows.size()) +
+                               " constraint rows depend on each other: the strains can answer only " +
+                               std::to_string(static_cast<long>(rows.size()) - static_cast<long>(count)) +
+                               " of them; of the forces that do the same, the smallest are taken",
+                    .remedy = remedy_of_rows(model, rows),
+                    .value = static_cast<double>(count)};
+    // (Rows of the same couplings along another axis read the same.)
+    const bool stands = std::any_of(model.warnings.begin(), model.warnings.end(), [&](const Warning& other) {
+      return other.where == warning.where && other.message == warning.message;
+    });
+    if (!stands) model.warnings.push_back(std::move(warning));
     warn_of_contradictions(model, own);
   }
 }

@@ -228,6 +228,11 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
         found.overlap = depth;
         found.overlapping = static_cast<int>(i);
       }
+      if (depth > std::max(kDeepest * thin, found.depth) && found.kind != Passage::Kind::missed) {
+        found.kind = Passage::Kind::passed;
+        found.pair = static_cast<int>(i);
+        found.depth = depth;
+      }
     }
     // Two that were apart have to move by the thickness of both to get to each other's other side.
     if (speed <= std::min(alarm, 0.5 * thin)) continue;

@@ -74,7 +74,8 @@ class Search {
     each_point_on_piece(own.a, own.b, on_piece);
     each_point_on_piece(own.b, own.a, on_piece);
     each_crossing(own.a, own.b, [&](const Edge& a, const Edge& b, const contact::Nearest& found, std::uint64_t) {
-      if (found.gap < 0.0 && crosses_inside(a, b, found)) deepest = std::max(deepest, -found.gap);
+      if (found.gap < 0.0 && crosses_inside(a, b, found))
+        deepest = std::max(deepest, -found.gap - stands_out(a.side.on) - stands_out(b.side.on));
     });
     if (deepest > 0.0) return deepest;
     return std::max(depth_of_edges(own.a, own.b), depth_of_edges(own.b, own.a));
@@ -471,12 +472,15 @@ class Search {
       return Vec3(weights[0] * own.placed.x[0] + weights[1] * own.placed.x[1]);
     };
     const auto in = [this](const Collider& body, const Vec3& point) {
-      if (body.kind == Kind::rod) return true;
-      const auto* cylinder = is_rigid(body) ? std::get_if<contact::Cylinder>(&shape_of(start_.model, body)) : nullptr;
-      const double stands_out = cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
-      return depth_in(body, contact::point_at(point, stands_out)) > 0.0;
+      return body.kind == Kind::rod || depth_in(body, contact::point_at(point, stands_out(body))) > 0.0;
     };
     return in(b.side.on, at(a, found.a)) && in(a.side.on, at(b, found.b));
+  }
+
+  /// By how much the edges of the prism that stands for a cylinder are outside it [m].
+  double stands_out(const Collider& body) const {
+    const auto* cylinder = is_rigid(body) ? std::get_if<contact::Cylinder>(&shape_of(start_.model, body)) : nullptr;
+    return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
   }
 
   /// Whether two thin edges are as good as parallel: the plane through both is no normal then, and their ends meet the

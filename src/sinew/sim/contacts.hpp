@@ -61,8 +61,8 @@ void finish_contacts(const StepContext& context, const ContactRoom& room, State&
 /// [m] by which a contact of the last iterate overlaps; 0 where it does not. Of a pair that overlapped when the run
 /// began, beyond what it may on its way apart.
 inline double overlap_of(const Model& model, const State& iterate, const ContactRoom& room, std::size_t contact) {
-  const bool began = model.pairs[iterate.contacts[contact].pair].depth > 0.0;
-  return std::max(0.0, (began ? std::min(0.0, room.least[contact]) : 0.0) - room.touches[contact].u[0]);
+  const double at_start = model.pairs[iterate.contacts[contact].pair].depth;
+  return std::max(0.0, std::clamp(room.least[contact], -at_start, 0.0) - room.touches[contact].u[0]);
 }
 
 /// Visits the two sides of a contact: side, weights of its corners, its material point, and 1 for what feels the force,

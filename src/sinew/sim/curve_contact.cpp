@@ -60,7 +60,7 @@ WeightRange weight_range(const Moment& now, const ContactSide& side, const Simpl
 /// False where a rod lies along a drum of about its own curvature and is equally near all along.
 bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                        const WeightRange& range_a, const WeightRange& range_b, contact::Nearest& found) {
-  constexpr double kLiesAlong = 0.3;    // of d . x'' to x'^2
+  constexpr double kLiesAlong = 0.3;    // of -d . x'' to x'^2
   constexpr double kSideBySide = 1e-3;  // of the determinant to that of lines across each other
   constexpr int kMostIterations = 20;
   std::array<double, 3>&s = found.a, &t = found.b;
@@ -81,8 +81,7 @@ bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex
       continue;
     }
     const double bends_a = d.dot(first.second), bends_b = -d.dot(second.second);
-    if (std::abs(bends_a) > kLiesAlong * first.speed * first.speed ||
-        std::abs(bends_b) > kLiesAlong * second.speed * second.speed)
+    if (bends_a < -kLiesAlong * first.speed * first.speed || bends_b < -kLiesAlong * second.speed * second.speed)
       return false;
     distance = d.norm();
     s_nearest = s[1];
@@ -102,7 +101,7 @@ bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex
     if (aa > 0.0) ds = step_within(range_a, s[1], (ab * dt - fa) / aa);
     put(s, s[1] + ds);
     put(t, t[1] + dt);
-    if (std::abs(ds) + std::abs(dt) < 1e-14) return true;
+    if (std::abs(ds) + std::abs(dt) < 1e-12) return true;
   }
   put(s, s_nearest);
   put(t, t_nearest);
@@ -142,7 +141,7 @@ bool is_piece_of_rod(const ContactSide& side, const Simplex& placed) {
   return side.on.kind == Kind::rod && placed.corners() == 2;
 }
 
-void refine_place(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
+bool refine_place(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                   contact::Nearest& found) {
   const auto leaves = [&now](const ContactSide& side, const Simplex& placed, double on_chord, double weight) {
     if (placed.corners() != 2) return false;
@@ -156,15 +155,16 @@ void refine_place(const Moment& now, const ContactState& own, const Simplex& a, 
   const bool one_place =
       nearest_on_curves(now, own, a, b, weight_range(now, own.a, a), weight_range(now, own.b, b), found);
   if (one_place && !leaves(own.a, a, on_chords.a[1], found.a[1]) && !leaves(own.b, b, on_chords.b[1], found.b[1]))
-    return;
+    return true;
   found = on_chords;
   if (!nearest_on_curves(now, own, a, b, {}, {}, found)) found = on_chords;
+  return !one_place;
 }
 
 Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                    contact::Nearest& found) {
   const bool curved_a = is_piece_of_rod(own.a, a), curved_b = is_piece_of_rod(own.b, b);
-  if (curved_a || curved_b) refine_place(now, own, a, b, found);
+  const bool goes_on = (curved_a || curved_b) && refine_place(now, own, a, b, found);
   const LinePoint first = line_point(now, own.a, a, found.a), second = line_point(now, own.b, b, found.b);
   if (!curved_a && !curved_b) {
     if (own.a.on.kind == Kind::rod && (b.kind == Simplex::Kind::plane || b.kind == Simplex::Kind::triangle))
@@ -195,8 +195,10 @@ Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a,
     }
   }
   // The tangent stands for the curve near its point alone, and edges and rods end: a foot beyond that is none.
-  if (!weight_range(now, own.a, a).has(found.a[1] + t.dot(feet.a - first.x) / std::max(first.speed, 1e-300)) ||
-      !weight_range(now, own.b, b).has(found.b[1] + u.dot(feet.b - second.x) / std::max(second.speed, 1e-300)))
+  const WeightRange range_a = goes_on ? weight_range(now, own.a, a) : WeightRange{},
+                    range_b = goes_on ? weight_range(now, own.b, b) : WeightRange{};
+  if (!range_a.has(found.a[1] + t.dot(feet.a - first.x) / std::max(first.speed, 1e-300)) ||
+      !range_b.has(found.b[1] + u.dot(feet.b - second.x) / std::max(second.speed, 1e-300)))
     return {first.x, second.x};
   found.normal = n;
   found.gap = n.dot(feet.a - feet.b) - a.radius - b.radius;

@@ -11,8 +11,8 @@ bool is_piece_of_rod(const ContactSide& side, const contact::Simplex& placed);
 
 /// Brings the places of a contact from the chords to the curves of rods, also where these go on beyond its pieces. A
 /// place that then comes to the end of its range or of the other part is not the nearest, which another contact has: it
-/// stays on its pieces. Where a rod lies along, the places on chords stay, which are unique.
-void refine_place(const Moment& now, const ContactState& own, const contact::Simplex& a, const contact::Simplex& b,
+/// stays on its pieces, and false is returned. Where a rod lies along, the places on chords stay, which are unique.
+bool refine_place(const Moment& now, const ContactState& own, const contact::Simplex& a, const contact::Simplex& b,
                   contact::Nearest& found);
 
 /// The points of two parts where they touch, on their axes.

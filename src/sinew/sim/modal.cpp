@@ -171,7 +171,11 @@ double largest_motion(const Model& model, const StepContext& context, const Stat
   return largest;
 }
 
-/// Few coordinates, and K may be singular (free rods): all modes at once, on a basis of what the rows leave free.
+/// Few coordinates, and K may be singular (free rods), M too (rods without mass): all modes at once, on a basis of what
+/// the rows leave free, as
+///     M v = mu (K + sigma M) v,    omega^2 = 1 / mu - sigma.
+/// So the slowest modes are the largest mu, known to rounding however stiff the rest is, and motions without inertia,
+/// which follow at once, have mu = 0.
 std::vector<NaturalMode> dense_modes(const Coordinates& at, const Linearization& here, const State& equilibrium,
                                      int count, std::string& failed) {
   const Model& model = at.model;
@@ -181,18 +185,24 @@ std::vector<NaturalMode> dense_modes(const Coordinates& at, const Linearization&
   Eigen::MatrixXd stiffness(nz + n, nz + n), G(rows, nz + n);
   stiffness << K.topLeftCorner(nz, nz), K.topRightCorner(nz, n), K.bottomLeftCorner(n, nz), K.bottomRightCorner(n, n);
   G << K.block(nz, 0, rows, nz), K.block(nz, nz + rows, rows, n);
+  const Eigen::MatrixXd mass = mass_matrix(model, equilibrium);
   const Eigen::MatrixXd Z = free_directions(G);
-  const Eigen::MatrixXd M = Z.transpose() * mass_matrix(model, equilibrium) * Z;
+  const Eigen::MatrixXd M = Z.transpose() * mass * Z;
   const Eigen::MatrixXd k = Z.transpose() * stiffness * Z;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, M);
-  if (Z.cols() == 0 || solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
-    failed = "the mass matrix is not positive definite: rods need a density";
-    return {};
+  constexpr double kSlowest = 1e6, kFastest = 1e18;  // [rad^2/s^2] that mu is known well for
+  for (double sigma = kSlowest; Z.cols() > 0 && sigma < kFastest; sigma *= 1e3) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(M, k + sigma * M);
+    if (solver.info() != Eigen::Success) continue;  // (unstable: omega^2 < -sigma)
+    std::vector<NaturalMode> modes;
+    for (Eigen::Index i = Z.cols() - 1; i >= 0 && static_cast<int>(modes.size()) < count; --i) {
+      const double mu = solver.eigenvalues()[i];
+      if (!(mu * kFastest > 1.0)) break;
+      modes.push_back({frequency_of(1.0 / mu - sigma), shape_of(at, Z * solver.eigenvectors().col(i))});
+    }
+    if (!modes.empty()) return modes;
   }
-  std::vector<NaturalMode> modes;
-  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(count, Z.cols()); ++i)
-    modes.push_back({frequency_of(solver.eigenvalues()[i]), shape_of(at, Z * solver.eigenvectors().col(i))});
-  return modes;
+  failed = "the mass matrix is not positive definite: rods need a density";
+  return {};
 }
 
 /// Lanczos with K^-1 (Spectra): the modes nearest to zero frequency.

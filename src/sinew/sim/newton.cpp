@@ -28,7 +28,7 @@ void judge(const StepContext& context, bool fixed, const State& state, StepRepor
   } else if (!fixed && turned_over(context, state)) {
     report.status = Status::max_iterations;
     report.detail = "a tie turned over";
-  } else if (const RodModel* spun = spun_round(context, state)) {
+  } else if (const RodModel* spun = fixed ? nullptr : spun_round(context, state)) {
     report.status = Status::max_iterations;
     report.detail = "rods." + spun->name + " turned by more than a right angle in a step";
   } else if (const RodModel* rod = exhausted(context.model, state)) {

@@ -252,6 +252,11 @@ void set_references(const StepContext& context, double force, Reduced& reduced) 
     for (int k = 0; k < own.rod.base_coordinates(); ++k)
       reference[own.unknown + k] = own.rod.base[k].turns ? turns : turns / (length * length);
   }
+  for (const BodyModel& own : model.bodies) {
+    const double turns = unbalanced * model.size / kCountsAsNone;
+    reference.segment<3>(own.unknown).setConstant(turns / (model.size * model.size));
+    reference.segment<3>(own.unknown + 3).setConstant(turns);
+  }
 }
 
 void clear(const Model& model, solve::RightSide& side) {

@@ -1,5 +1,6 @@
 #include "sinew/sim/run.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -33,10 +34,19 @@ StepReport taken(StepResult result, State& state) {
   return report;
 }
 
-/// Of a part of a step of h that begins this far within it, at a multiple of itself.
-int fewest_halvings(double h, double done) {
-  const auto place = static_cast<unsigned>(std::lround(std::ldexp(done / h, kHalvings)));
-  return place == 0 ? 0 : kHalvings - std::countr_zero(place);
+/// Where a state is within its step of the grid, which has kParts parts.
+constexpr int kParts = 1 << kHalvings;
+struct PlaceInStep {
+  int parts = 0;     ///< that it has behind it
+  double off = 0.0;  ///< [s] beyond that; rounding of the time is none
+  int halvings() const { return parts == 0 ? 0 : kHalvings - std::countr_zero(static_cast<unsigned>(parts)); }
+};
+
+PlaceInStep place_in_step(double h, double done) {
+  const double part = std::ldexp(h, -kHalvings);
+  const int parts = static_cast<int>(std::clamp(std::round(done / part), 0.0, kParts - 1.0));
+  const double off = done - parts * part;
+  return {parts, std::abs(off) < 1e-3 * part ? 0.0 : off};
 }
 
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
@@ -45,37 +55,36 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const bool equilibrium = model.scene.analysis == Analysis::quasi_static && !step_rules(model, effort).fixed;
   const double h = model.scene.time.step;
   const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
-  const bool on_grid = state.time == from;
-  const double whole = on_grid ? h : to - state.time;
+  const PlaceInStep place = place_in_step(h, state.time - from);
+  const double left = std::ldexp(h * (kParts - place.parts), -kHalvings) - place.off;
   Command& command = workspace.memory().command;
   const bool inverse = !model.effectors.empty() && !told.forward;
-  const int fewest = fewest_halvings(h, state.time - from);
   // With contacts an equilibrium has been looked for along parts of the step already.
-  const int most = equilibrium && !inverse && !model.pairs.empty() ? fewest : kHalvings;
+  const int last = equilibrium && !inverse && !model.pairs.empty() ? place.halvings() : kHalvings;
   Goal goal;
   StepReport earlier;
-  for (int halvings = fewest; halvings <= most; ++halvings) {
-    const double part = std::ldexp(h, -halvings);
-    if (part > whole * (1.0 + 1e-9) && halvings < most) continue;  // (a time that is no multiple of such a part)
+  for (int halvings = place.halvings(); halvings <= last; ++halvings) {
     StepReport report;
-    const bool lands = part >= whole * (1.0 - 1e-9);
-    const double time = lands ? to : state.time + part;
+    const int end = place.parts + (kParts >> halvings);
+    const bool lands = end == kParts;
+    const double time = lands ? to : from + std::ldexp(h * end, -kHalvings);
+    const double part = lands ? left : std::ldexp(h, -halvings) - place.off;
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
     if (told.command)
       command = *told.command;
     else
       scene_command(model, state, to, command);
-    if (!lands) command = between(command_of(model, state), command, part / whole);
+    if (!lands) command = between(command_of(model, state), command, part / left);
     if (inverse) {
       if (told.goal)
         goal = *told.goal;
       else
         goal_at(model, time, goal);
       report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
-                           : inverse_step(model, workspace, goal, command, lands ? whole : part, state, effort);
+                           : inverse_step(model, workspace, goal, command, part, state, effort);
     } else {
       report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
-                           : step(model, workspace, command, lands ? whole : part, state, effort);
+                           : step(model, workspace, command, part, state, effort);
     }
     report.halvings = halvings;
     // What earlier attempts cost is part of what the step did.

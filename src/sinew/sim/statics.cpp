@@ -24,9 +24,8 @@ constexpr int kMostDetours = 200;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 /// Of its load, brought on by parts where contacts make kinks in a path.
 constexpr double kSmallestPart = 1.0 / 256.0;
-/// Iterations that a quasi-static step may take with all its parts, in multiples of `newton.limit`: beyond them it is
-/// given up, so that no step thinks for minutes.
-constexpr int kMostWork = 64;
+/// Iterations of a quasi-static step, in multiples of `newton.limit`, after which no further part of it is tried.
+constexpr int kMaxIterationsFactor = 64;
 
 /// What is prescribed along a path: all of it grows linearly from one end to the other.
 struct Ramp {
@@ -215,13 +214,13 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   };
 
   NewtonRules rules = whole_steps(model);
-  const int most = kMostWork * rules.limit;
+  const int iteration_limit = kMaxIterationsFactor * rules.limit;
   rules.limit = std::min(rules.limit, kMostIterations);
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
   if (!sound(end)) {
     Iterate on{state, 0.0};
-    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < most; ++i) {
+    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
       Reached next = path_step(model, memory, ramp, on);
       add_effort(next.report, spent);
       const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
@@ -229,7 +228,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
     }
-    for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart && spent.newton < most;) {
+    for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart && spent.newton < iteration_limit;) {
       Reached next = go(on.state, std::min(on.t + part, 1.0), rules);
       add_effort(next.report, spent);
       if (!sound(next)) {

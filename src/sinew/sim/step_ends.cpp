@@ -135,9 +135,15 @@ const RodModel* spun_round(const StepContext& context, const State& next) {
     const RodModel& model = context.model.rods[i];
     const RodState &start = context.start.rods[i], &end = next.rods[i];
     if (end.masses.cols() == 0) continue;
+    // What drives a turn says how far it goes.
+    const auto driven = [&](int unknown) {
+      const auto& actuators = context.model.actuators;
+      return std::any_of(actuators.begin(), actuators.end(),
+                         [&](const ActuatorModel& own) { return own.unknown == unknown && !own.told_force(); });
+    };
     bool beyond = model.floats && (start.turned.transpose() * end.turned).trace() < 1.0;  // 1 + 2 cos of the angle
     for (int k = 0; k < model.rod.base_coordinates() && !model.floats; ++k)
-      beyond |= model.rod.base[k].turns && std::abs(end.q[k] - start.q[k]) > 0.5 * M_PI;
+      beyond |= model.rod.base[k].turns && std::abs(end.q[k] - start.q[k]) > 0.5 * M_PI && !driven(model.unknown + k);
     if (beyond) return &model;
   }
   return nullptr;

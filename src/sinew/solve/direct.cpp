@@ -573,6 +573,8 @@ MatrixInertia CoupledFactor::inertia_of(Eigen::MatrixXd K) const {
   Eigen::VectorXd part = Eigen::VectorXd::Zero(reference.size());
   for (Eigen::Index i = 0; i < K.rows(); ++i) {
     if (std::abs(motions.eigenvalues()[i]) > kZero) continue;
+    // (What depends on each other among the rows is no motion: beside its multipliers there is rounding.)
+    if (motions.eigenvectors().col(i).head(reference.size()).norm() < 1e-6) continue;
     const Eigen::VectorXd motion = motions.eigenvectors().col(i).cwiseProduct(scale).head(reference.size());
     const Eigen::VectorXd weighed = motion.cwiseAbs().cwiseProduct(reference.cwiseSqrt());
     if (const double largest = weighed.maxCoeff(); largest > 0.0) part = part.cwiseMax(weighed / largest);
