@@ -283,6 +283,16 @@ TEST(Faults, anchored_and_tied) {
   }
 }
 
+// Two cables on one path told different lengths: `max_iterations`, "try smaller steps".
+TEST(Faults, cables_contradict) {
+  for (const char* analysis : {"static", "quasi_static", "dynamic"}) {
+    const RecordedRun run = fault("cables_contradict", {std::string("analysis=") + analysis});
+    ASSERT_FALSE(run.done());
+    EXPECT_THAT(run.failure().detail, HasSubstr("contradict")) << analysis << ": " << to_string(run.failure().status);
+    EXPECT_THAT(run.failure().detail, HasSubstr("actuators.first, actuators.second")) << analysis;
+  }
+}
+
 // Modes of a massless beam with a ball at its tip: -2.9e19 Hz.
 TEST(Faults, massless_rod_carries_body) {
   const RecordedRun run = fault("massless_rod_carries_body");

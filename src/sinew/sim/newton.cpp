@@ -133,7 +133,13 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.contact = here.contact_report();
     report.status = status;
     report.detail = std::move(detail);
-    contradicts(std::max(0.5 * report.violation, 10.0 * context.model.scene.newton.tolerance * context.model.size));
+    if (contradicts(std::max(0.5 * report.violation, 10.0 * context.model.scene.newton.tolerance * context.model.size)))
+      return report;
+    // Rows that once depended on each other may do so no longer by a hair: no force is large enough then.
+    const std::vector<Warning>& known = context.model.warnings;
+    const auto told = std::find_if(known.begin(), known.end(),
+                                   [](const Warning& own) { return own.code == "contradicting_commands"; });
+    if (told != known.end()) report.detail += (report.detail.empty() ? "" : "; ") + told->where + ": " + told->message;
     return report;
   };
   const auto complete = [&] {
