@@ -314,6 +314,8 @@ TEST(Faults, massless_rod_carries_body) {
                              std::sqrt(squares[1])};
   for (int i = 0; i < 5; ++i)
     EXPECT_NEAR(frequencies[static_cast<std::size_t>(i) + 1] * 2.0 * std::numbers::pi, expected[i], 1e-6 * expected[i]);
+  const RecordedRun free = fault("massless_rod_carries_body", {"rods.beam.base=free", "modes=8"});
+  EXPECT_THAT(free.failure().detail, HasSubstr("6 modes only"));
 }
 
 // "The path turned back, there is no equilibrium", after 3000 steps at 73 % of the load.

@@ -189,15 +189,18 @@ std::vector<NaturalMode> dense_modes(const Coordinates& at, const Linearization&
   const Eigen::MatrixXd Z = free_directions(G);
   const Eigen::MatrixXd M = Z.transpose() * mass * Z;
   const Eigen::MatrixXd k = Z.transpose() * stiffness * Z;
-  constexpr double kSlowest = 1e6, kFastest = 1e18;  // [rad^2/s^2] that mu is known well for
-  for (double sigma = kSlowest; Z.cols() > 0 && sigma < kFastest; sigma *= 1e3) {
+  // Of a motion without inertia v^T M v is what rounding has left of its terms.
+  constexpr double kRounding = 1e-13;
+  const Eigen::MatrixXd terms = Z.cwiseAbs().transpose() * mass.cwiseAbs() * Z.cwiseAbs();
+  for (double sigma = 1e6; Z.cols() > 0 && sigma < 1e18; sigma *= 1e3) {  // [rad^2/s^2]
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(M, k + sigma * M);
     if (solver.info() != Eigen::Success) continue;  // (unstable: omega^2 < -sigma)
     std::vector<NaturalMode> modes;
     for (Eigen::Index i = Z.cols() - 1; i >= 0 && static_cast<int>(modes.size()) < count; --i) {
+      const Eigen::VectorXd v = solver.eigenvectors().col(i);
       const double mu = solver.eigenvalues()[i];
-      if (!(mu * kFastest > 1.0)) break;
-      modes.push_back({frequency_of(1.0 / mu - sigma), shape_of(at, Z * solver.eigenvectors().col(i))});
+      if (!(v.dot(M * v) > kRounding * v.cwiseAbs().dot(terms * v.cwiseAbs()))) break;
+      modes.push_back({frequency_of(1.0 / mu - sigma), shape_of(at, Z * v)});
     }
     if (!modes.empty()) return modes;
   }
