@@ -299,15 +299,15 @@ TEST(Faults, massless_rod_carries_body) {
   ASSERT_TRUE(run.done()) << run.why();
   // 3 EI / L^3, 6 EI / L^2 and 4 EI / L at the centre of the ball, and G J / L.
   constexpr double kLength = 0.3, kRadius = 5e-3, kYoung = 1e6, kMass = 0.1, kBall = 0.01;
-  constexpr double kArea = std::numbers::pi * kRadius * kRadius * kRadius * kRadius / 4.0;
-  constexpr double kInertia = 0.4 * kMass * kBall * kBall, kBending = kYoung * kArea;
+  constexpr double kSecondMoment = std::numbers::pi * kRadius * kRadius * kRadius * kRadius / 4.0;
+  constexpr double kInertia = 0.4 * kMass * kBall * kBall, kBending = kYoung * kSecondMoment;
   Eigen::Matrix2d stiffness, mass;
   stiffness << 12.0, -6.0 * kLength, -6.0 * kLength, 4.0 * kLength * kLength;
   stiffness *= kBending / (kLength * kLength * kLength);
   mass << kMass, 0.0, 0.0, kInertia;
   const Eigen::Vector2d squares =
       Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(stiffness, mass).eigenvalues();
-  const double twist = std::sqrt(kYoung / 3.0 * 2.0 * kArea / kLength / kInertia);
+  const double twist = std::sqrt(kYoung / 3.0 * 2.0 * kSecondMoment / kLength / kInertia);
   const std::vector<double> frequencies = run.signal("mode.frequency");
   ASSERT_EQ(frequencies.size(), 6u);
   const double expected[] = {std::sqrt(squares[0]), std::sqrt(squares[0]), twist, std::sqrt(squares[1]),
