@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
+#include "sinew/lie/rotation.hpp"
 #include "support/contacts.hpp"
 
 namespace sinew {
@@ -80,6 +82,79 @@ TEST(Contact, BounceReachesRestitutionSquared) {
     });
     EXPECT_NEAR(highest, 0.49 * 0.5, 10.0 * h * 0.5);
   }
+}
+
+/// The last step of a run, and what it was warned of.
+struct LastStep {
+  State before, after;
+  std::vector<Warning> warnings;
+};
+LastStep last_step(const Scene& scene) {
+  const Model model = build(scene, no_mesh);
+  LastStep last;
+  last.after = initial_state(model);
+  const RunEnd end = run(model, last.after, [&](const State& state, const StepReport& report) {
+    last.before = last.after;
+    last.after = state;
+    last.warnings = report.warnings;
+    return true;
+  });
+  EXPECT_EQ(end, RunEnd::done);
+  return last;
+}
+
+/// A body rolls along x. What it is told to be off by is what it is: the way that it turned beside the way it came.
+void tells_how_far_rolling_is_off(const BodyShape& shape, const Vec3& rotate) {
+  constexpr double kRadius = 10 * mm, kSpin = 20.0;
+  for (const double angle : {0.1, 0.2, 0.3, 0.6}) {
+    Scene scene = on_floor(angle / kSpin, 4 * angle / kSpin, 0.8);
+    RigidBody body = box_of(kRadius, 0.1, Vec3(0, 0, kRadius));
+    body.shape = shape;
+    body.pose.rotate = rotate;
+    body.velocity = Vec3(kSpin * kRadius, 0, 0);
+    body.spin = Vec3(0, kSpin, 0);
+    scene.bodies.emplace_back("wheel", body);
+    const LastStep last = last_step(scene);
+    const rigid::Motion &from = last.before.bodies[0], &to = last.after.bodies[0];
+    const double turned = lie::log(to.R * from.R.transpose()).y(), came = to.p.x() - from.p.x();
+    const double off = 1.0 - came / (kRadius * turned);
+    const Warning* told = find_warning(last.warnings, "coarse_rolling");
+    EXPECT_NEAR(turned, angle, 0.3 * angle);
+    ASSERT_EQ(told != nullptr, off > 0.01) << angle << " rad a step, off by " << off;
+    if (told) EXPECT_NEAR(told->value, off, 1e-6 + 1e-3 * off) << angle;
+  }
+}
+
+TEST(Contact, TellsHowFarRollingIsOff) {
+  constexpr double kRight = 0.5 * std::numbers::pi;
+  for (const auto& [name, shape, rotate] :
+       {std::tuple<const char*, BodyShape, Vec3>("sphere", SphereShape{10 * mm}, Vec3::Zero()),
+        {"capsule", CapsuleShape{10 * mm, 30 * mm}, Vec3(kRight, 0, 0)},
+        {"cylinder", CylinderShape{10 * mm, 30 * mm}, Vec3(kRight, 0, 0)}}) {
+    SCOPED_TRACE(name);
+    tells_how_far_rolling_is_off(shape, rotate);
+  }
+}
+
+// A contact that turns with both objects is no rolling, however far they turn in a step.
+TEST(Contact, WhatTurnsTogetherDoesNotRoll) {
+  Scene scene = on_floor(0.01, 0.02, 100.0);
+  Frame hand;
+  hand.motion = FrameMotion{{0.0, 0.02}, {Vec3::Zero(), Vec3(0.8, 0, 0)}, {}};
+  scene.frames.emplace_back("hand", hand);
+  scene.obstacles[0].second.shape = PlaneShape{Vec3(0, 0, -5 * mm), Vec3::UnitZ()};
+  scene.obstacles[0].second.frame = "hand";
+  Rod rod;
+  rod.path = {Vec3(-10 * mm, 0, 0), Vec3(10 * mm, 0, 0)};
+  rod.strains = {Strain::bending_y, Strain::bending_z};
+  rod.section = Circle{5 * mm};
+  rod.material = {1e9, 0.3, 1000.0};
+  rod.base = {BaseAxis::z, BaseAxis::turn_x};
+  scene.rods.emplace_back("held", rod);
+  const LastStep last = last_step(scene);
+  EXPECT_FALSE(last.after.contacts.empty());
+  EXPECT_NEAR(last.after.rods[0].q[1] - last.before.rods[0].q[1], 0.4, 1e-5);
+  EXPECT_EQ(find_warning(last.warnings, "coarse_rolling"), nullptr);
 }
 
 TEST(Contact, TallBoxTipsBeyondItsDiagonal) {

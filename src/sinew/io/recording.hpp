@@ -4,7 +4,7 @@
 // Bytes (all numbers little-endian; f64 is IEEE 754 binary64, its bits as they are):
 //
 //   file    magic     8 bytes  89 53 49 4e 45 57 0d 0a ("\x89SINEW\r\n": a text conversion destroys it)
-//           version   u32      4
+//           version   u32      6
 //           reserved  u32      0
 //           record 0           the header
 //           record 1, 2, ...   the steps, in order
@@ -17,7 +17,8 @@
 //           u64 state_layout, u64 number of signals, string each signal's name
 //   step    f64 time, string status, string targets, u32 newton, f64 residual, f64 violation, f64 each signal,
 //           u64 number of state entries, f64 each, u64 number of warnings, each of
-//   warning string code, string where, string message, string remedy, string unit, f64 time, f64 value, f64 limit
+//   warning string code, string where, string message, string remedy, string unit, f64 time, f64 value, f64 limit,
+//           u32 steps, u32 latest (0 or 1)
 //   string  u64 bytes, then the bytes
 //
 // Nothing in it depends on the clock or the machine, so equal runs give equal files. A program of another `version`

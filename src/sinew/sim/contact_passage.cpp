@@ -178,14 +178,24 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   Passage found;
   const Model& model = context.model;
   if (model.pairs.empty()) return found;
+  // Of what is deeper than it may be, the deepest counts; what was missed is found by doing the step again, so it goes
+  // before what makes it be refused.
+  const auto note = [&found](Passage::Kind kind, std::size_t pair, double depth, double most) {
+    if (!(depth > std::max(most, found.depth))) return;
+    if (kind != Passage::Kind::missed && found.kind == Passage::Kind::missed) return;
+    found.kind = kind;
+    found.pair = static_cast<int>(pair);
+    found.depth = depth;
+  };
+  const auto note_overlap = [&found](std::size_t pair, double depth, double least) {
+    if (!(depth > std::max(least, found.overlap))) return;
+    found.overlap = depth;
+    found.overlapping = static_cast<int>(pair);
+  };
   if (room.touches.size() == next.contacts.size()) {
     for (std::size_t i = 0; i < room.touches.size(); ++i) {
-      const int pair = next.contacts[i].pair;
-      const double depth = overlap_of(model, next, room, i);
-      if (!(depth > std::max(kDeepest * room.thin[pair], found.depth))) continue;
-      found.kind = Passage::Kind::passed;
-      found.pair = pair;
-      found.depth = depth;
+      const auto pair = static_cast<std::size_t>(next.contacts[i].pair);
+      note(Passage::Kind::passed, pair, overlap_of(model, next, room, i), kDeepest * room.thin[pair]);
     }
   }
   std::vector<rod::Configuration> configured;
@@ -210,39 +220,24 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const double thin = room.thin[i];
     // (Whatever was found: chords of what has folded may lie too deep to be met.)
     const double between = deepest_between(end, pair) - pair.depth;
-    if (between > std::max(kDeepestBetween * thin, found.overlap)) {
-      found.overlap = between;
-      found.overlapping = static_cast<int>(i);
-    }
-    if (between > std::max(kDeepest * thin, found.depth) && found.kind != Passage::Kind::missed) {
-      found.kind = Passage::Kind::folded;
-      found.pair = static_cast<int>(i);
-      found.depth = between;
-    }
+    note_overlap(i, between, kDeepestBetween * thin);
+    note(Passage::Kind::folded, i, between, kDeepest * thin);
     const bool shapes = are_shapes(model, pair);
     const bool known = shapes && std::any_of(room.found.begin(), room.found.end(),
                                              [i](const auto& part) { return part.first == static_cast<int>(i); });
     if (known) {  // parts that were not listed may have come in
       const double depth = overlap_of_shapes(motion, pair, 1.0) - pair.depth;
-      if (depth > found.overlap) {
-        found.overlap = depth;
-        found.overlapping = static_cast<int>(i);
-      }
-      if (depth > std::max(kDeepest * thin, found.depth) && found.kind != Passage::Kind::missed) {
-        found.kind = Passage::Kind::passed;
-        found.pair = static_cast<int>(i);
-        found.depth = depth;
-      }
+      note_overlap(i, depth, 0.0);
+      note(Passage::Kind::passed, i, depth, kDeepest * thin);
     }
     // Two that were apart have to move by the thickness of both to get to each other's other side.
     if (speed <= std::min(alarm, 0.5 * thin)) continue;
     const auto meets = [&](bool was_found, double depth) {
-      const double most = was_found ? kDeepest * thin : 1e-6 * model.size;
-      if (!(depth > most) || depth <= found.depth) return;
-      if (was_found && found.kind == Passage::Kind::missed) return;
-      found.kind = was_found ? Passage::Kind::passed : Passage::Kind::missed;
-      found.pair = static_cast<int>(i);
-      found.depth = depth;
+      if (was_found) {
+        note(Passage::Kind::passed, i, depth, kDeepest * thin);
+      } else {
+        note(Passage::Kind::missed, i, depth, 1e-6 * model.size);
+      }
     };
     if (shapes) {
       meets(known, deepest_of_shapes(motion, pair, speed, thin));

@@ -6,6 +6,7 @@
 
 #include "sinew/error/digits.hpp"
 #include "sinew/sim/assessment.hpp"
+#include "sinew/sim/rolling.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
@@ -152,6 +153,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       report.contact.deepest_pair = memory.passage.overlapping;
     }
     const bool lifts = lifts_apart(context.model, iterate.state, here.contacts());
+    const std::vector<Warning> rolling =
+        evaluated ? assess_rolling(context, iterate.state, here.contacts()) : std::vector<Warning>();
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     if (rules.fixed) contradicts(std::max(0.5 * report.violation, 1e-4 * context.model.size));
@@ -172,6 +175,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.redundant |= !here.reduced().redundant.empty();
     if (accepted(report.status) && rules.evaluation == Evaluation::full) {
       assess(context, here, iterate.state, report);
+      report.warnings.insert(report.warnings.end(), rolling.begin(), rolling.end());
       report.judged = true;
     }
     return report;
