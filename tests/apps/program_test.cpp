@@ -117,7 +117,7 @@ TEST(Run, WritesAllItsFiles) {
   EXPECT_EQ(
       rows[0],
       "time,status,newton,tip.x,tip.y,tip.z,pull.displacement,pull.force,energy.kinetic,energy.elastic,energy.weight,"
-      "energy.work,energy.dissipated");
+      "energy.work,energy.dissipated,energy.work_bound");
   EXPECT_EQ(rows[1].substr(0, 9), "0,rest,0,");
   for (std::size_t i = 2; i < rows.size(); ++i) EXPECT_NE(rows[i].find(",converged,"), std::string::npos) << rows[i];
   EXPECT_EQ(std::stod(rows.back()), 0.05);

@@ -98,8 +98,8 @@ TEST(Build, signals_are_named_as_promised) {
   EXPECT_EQ(signal_names(model),
             (std::vector<std::string>{"tip.x", "tip.y", "tip.z", "pull.displacement", "pull.force", "twist.angle",
                                       "twist.torque", "energy.kinetic", "energy.elastic", "energy.weight",
-                                      "energy.work", "energy.dissipated"}));
-  EXPECT_EQ(signal_values(model, initial_state(model)).size(), 12u);
+                                      "energy.work", "energy.dissipated", "energy.work_bound"}));
+  EXPECT_EQ(signal_values(model, initial_state(model)).size(), 13u);
 }
 
 }  // namespace

@@ -83,17 +83,15 @@ def table(h: float, steps: int, u: Vec) -> dict[str, Any]:
 
 def from_nowhere(rows: list[Row]) -> list[str]:
     """Energy that was neither there nor put in, beyond a few thousandths of the most there was."""
-    if not rows or "energy.dissipated" not in rows[0]:
+    if not rows or "energy.work_bound" not in rows[0]:
         return []
-    most = lost = unsure = work = before = 0.0  # work counts with the mean of forces at the ends of steps
+    most, least = 0.0, math.inf
     for row in rows:
-        most = max(most, row["energy.kinetic"] + row["energy.elastic"])
-        if row["energy.dissipated"] > lost:
-            lost, unsure = row["energy.dissipated"], 0.0
-        more, work = row["energy.work"] - work, row["energy.work"]
-        unsure, before = unsure + abs(more - before), more
-        gain = lost - row["energy.dissipated"]
-        if gain - unsure > 3e-3 * most and most > 1e-12:
+        stored = row["energy.kinetic"] + row["energy.elastic"]
+        own = stored + row["energy.weight"] - row["energy.work_bound"]
+        most, least = max(most, stored), min(least, own)
+        gain = own - least
+        if gain > 3e-3 * most and most > 1e-12:
             return [f"{gain:.3g} J from nowhere of {most:.3g} J at t = {row['time']:.4g} s, without a word"]
     return []
 

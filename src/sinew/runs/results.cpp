@@ -296,8 +296,9 @@ double view_interval(const Scene& scene) {
 
 namespace {
 
-/// Energy that comes from nowhere: what has been dissipated so far falls, although nothing gives it back. Contact takes
-/// energy or leaves it, and so does backward Euler; long linearised steps and rods that snap may not.
+/// Energy that comes from nowhere: kinetic, elastic and weight less the most that work may have been rises above what
+/// it was. Backward Euler does not let it (sim/work.hpp), contact takes energy or leaves it; long linearised steps
+/// and rods that snap may not.
 void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& steps, std::vector<Warning>& warnings) {
   constexpr double kGain = 1e-3;  // of the largest kinetic and elastic energy so far
   // What overlaps at the start is lifted apart, slowly, and warned of already.
@@ -308,23 +309,15 @@ void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& st
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };
   const std::size_t kinetic = column("energy.kinetic"), elastic = column("energy.elastic"),
-                    work = column("energy.work"), dissipated = column("energy.dissipated");
-  double largest = 0.0, peak = -INFINITY, done = 0.0, before = 0.0;
-  // Work is known by the mean of forces at the ends of steps, so to about what it changes by from step to step: since
-  // what was dissipated was at its most.
-  double unsure = 0.0;
+                    weight = column("energy.weight"), work = column("energy.work_bound");
+  double largest = 0.0, least = model.start_energy;
   for (const io::RecordedStep& step : steps) {
-    if (dissipated >= step.signals.size()) return;
-    largest = std::max(largest, step.signals[kinetic] + step.signals[elastic]);
-    const double more = step.signals[work] - done;
-    if (step.signals[dissipated] > peak) {
-      peak = step.signals[dissipated];
-      unsure = 0.0;
-    }
-    unsure += std::abs(more - before);
-    done = step.signals[work];
-    before = more;
-    const double gain = peak - step.signals[dissipated] - unsure;
+    if (work >= step.signals.size()) return;
+    const double stored = step.signals[kinetic] + step.signals[elastic],
+                 own = stored + step.signals[weight] - step.signals[work];
+    largest = std::max(largest, stored);
+    least = std::min(least, own);
+    const double gain = own - least;
     if (!(gain > kGain * largest) || !(largest > kSmall * model.bearing * model.size)) continue;
     merge({.code = "energy_gain",
            .where = "energy",

@@ -325,10 +325,9 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   const double faster = after.kinetic - before.kinetic - std::max(0.0, before.weight - after.weight);
   if (faster <= kGain * std::max(before.kinetic + before.elastic, after.kinetic + after.elastic)) return {};
   const EnergyBalance from = energy_balance(model, context.start), to = energy_balance(model, next);
-  const double gain = to.total() - from.total() - (next.energies.work - context.start.energies.work);
+  const double gain = to.total() - from.total() - (next.energies.work_bound - context.start.energies.work_bound);
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
-  if (!(gain > kGain * size + work_uncertainty(context, next)) || !(size > 1e-14 * model.bearing * model.size))
-    return {};
+  if (!(gain > kGain * size) || !(size > 1e-14 * model.bearing * model.size)) return {};
   return "contacts have added " + three_digits(gain) + " J, " + three_digits(gain / size) +
          " of the kinetic and elastic energy";
 }

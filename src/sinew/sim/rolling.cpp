@@ -47,7 +47,7 @@ Rolled rolled(const ContactSide& side, const Simplex& placed, const std::array<d
     return rolled(to.R * from.R.transpose(), with_normal(), p - to.p);
   }
   const Eigen::Matrix3d R = now.pose(side.on).R * start.pose(side.on).R.transpose();
-  if (placed.rim.isZero(0.0)) return placed.radius > 0.0 ? rolled(R, with_normal(), placed.radius * out) : Rolled{};
+  if (placed.rim.isZero(0.0)) return rolled(R, with_normal(), placed.radius * out);
   const Simplex earlier = start.placed(side);
   const Vec3 axis = placed.rim.normalized(), axis_before = earlier.rim.normalized();
   if (axis.cross(out).norm() < kStands || axis_before.cross(before).norm() < kStands) return {};

@@ -67,12 +67,16 @@ SignalGroup target_group(const Model& all, std::size_t number) {
 
 SignalGroup energy_group() {
   SignalGroup group;
-  for (const char* const part : {"kinetic", "elastic", "weight", "work", "dissipated"})
+  for (const char* const part : {"kinetic", "elastic", "weight", "work", "dissipated", "work_bound"})
     group.columns.push_back({std::string("energy.") + part, "J"});
   group.values = [](const Model& model, const State& state) {
     const EnergyBalance now = energy_balance(model, state);
-    return std::vector<double>{now.kinetic, now.elastic, now.weight, state.energies.work,
-                               model.start_energy + state.energies.work - now.total()};
+    return std::vector<double>{now.kinetic,
+                               now.elastic,
+                               now.weight,
+                               state.energies.work,
+                               model.start_energy + state.energies.work - now.total(),
+                               state.energies.work_bound};
   };
   return group;
 }

@@ -115,6 +115,7 @@ void each_number(StateType& state, const Visit& visit) {
   for (auto& value : state.actuators) visit(value);
   for (auto& value : state.loads) visit(value);
   visit(state.energies.work);
+  visit(state.energies.work_bound);
   visit(state.path.step);
   visit(state.path.rate);
   visit(state.path.count);

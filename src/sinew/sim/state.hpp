@@ -62,7 +62,8 @@ struct PointState {
 
 /// What has been put into the rods and solids since the start [J].
 struct Energies {
-  double work = 0.0;  ///< by motors, loads and supports of solids
+  double work = 0.0;        ///< by motors, loads, supports and frames (sim/work.hpp)
+  double work_bound = 0.0;  ///< the most that it may have been
 };
 
 /// Where a static analysis stands on its path (sim/statics.hpp); as it is made in other analyses.
@@ -101,7 +102,7 @@ bool finite(const State& state);
 
 /// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
 /// refused.
-inline constexpr std::uint64_t kStateLayout = 5;
+inline constexpr std::uint64_t kStateLayout = 6;
 /// The state as plain numbers in a fixed order, contacts at the end, and back. unpack throws std::invalid_argument if
 /// their number, or a contact's pair, is not this model's.
 std::vector<double> pack(const State& state);

@@ -99,7 +99,9 @@ void finish(const StepContext& context, State& next, Linearization& here) {
   for (std::size_t i = 0; i < next.actuators.size(); ++i)
     next.actuators[i] = motor_force(model, context.command, next, static_cast<int>(i));
   next.loads = context.command.loads;
-  next.energies.work += work(context, next, here.contacts().touches);
+  const Work done = work(context, next, here.contacts().touches);
+  next.energies.work += done.mean();
+  next.energies.work_bound += done.bound();
   for (std::size_t i = 0; i < next.rods.size(); ++i) {
     if (model.rods[i].floats) rebase(model.rods[i].rod, next.rods[i]);
   }

@@ -13,44 +13,49 @@ namespace sinew {
 namespace {
 
 /// Work of a load whose factor goes from one value to another.
-double work_of(const RodLoadModel& load, const StepContext& context, const State& next, double before, double after) {
+Work work_of(const RodLoadModel& load, const StepContext& context, const State& next, double before, double after) {
   const Model& model = context.model;
   const rod::Rod& rod = model.rods[load.rod].rod;
   const Placement base = rod_base(model, context.start, load.rod);
   const auto start = rod::configure(rod, {base, context.start.rods[load.rod].turned}, context.start.rods[load.rod].q);
   const auto end = rod::configure(rod, base_of(context, next, load.rod), next.rods[load.rod].q);
-  double sum = 0.0;
+  double first = 0.0, last = 0.0;  // of the whole load, as it lies at the start and at the end
   for (const RodLoadModel::At& at : load.at) {
     const rod::Branch a = rod::branch(start, at.s), b = rod::branch(end, at.s);
-    const Vec3 turn = lie::log(b.R * a.R.transpose());
-    const Vec3 along = load.follower ? Vec3(0.5 * (a.R.transpose() + b.R.transpose()) * (b.p - a.p)) : Vec3(b.p - a.p);
-    const Vec3 about = load.follower ? Vec3(a.R.transpose() * turn) : turn;
-    sum += at.weight * (load.force.dot(along) + load.moment.dot(about));
+    const Vec3 along = b.p - a.p, about = lie::log(b.R * a.R.transpose());
+    const auto of = [&](const rod::Mat3& axes) {
+      return at.weight * ((axes * load.force).dot(along) + (axes * load.moment).dot(about));
+    };
+    first += of(load.follower ? a.R : rod::Mat3::Identity());
+    last += of(load.follower ? b.R : rod::Mat3::Identity());
   }
-  return 0.5 * (before + after) * sum;
+  return Work{before * first, after * last};
 }
 
-double work_of(const SolidLoadModel& load, const StepContext& context, const State& next, double before, double after) {
+Work work_of(const SolidLoadModel& load, const StepContext& context, const State& next, double before, double after) {
   const Eigen::Matrix3Xd &from = context.start.solids[load.solid].x, &to = next.solids[load.solid].x;
-  const Eigen::Matrix3Xd force = before * load_forces(load, from) + after * load_forces(load, to);
-  return 0.5 * force.cwiseProduct(to - from).sum();
+  return Work{before * load_forces(load, from).cwiseProduct(to - from).sum(),
+              after * load_forces(load, to).cwiseProduct(to - from).sum()};
 }
 
 /// Work of what holds a solid where it is held to move, and of the frame that its springs pull at.
-double work_of_supports(const StepContext& context, const State& next, int number) {
+Work work_of_supports(const StepContext& context, const State& next, int number) {
   const SolidModel& model = context.model.solids[number];
   const SolidState &from = context.start.solids[number], &to = next.solids[number];
-  double sum = 0.0;
+  Work sum;
   Eigen::Index held = 0;
   solid::each_held(model.body, [&](int axis, int node) {
-    sum += 0.5 * (from.reaction[held] + to.reaction[held]) * (to.x(axis, node) - from.x(axis, node));
+    const double way = to.x(axis, node) - from.x(axis, node);
+    sum += Work{from.reaction[held] * way, to.reaction[held] * way};
     ++held;
   });
   if (model.springs.size() == 0) return sum;
   const Placement before = moved(context.model, context.start, model.frame), after = context.moved(model.frame);
-  const Eigen::Matrix3Xd drawn = 0.5 * (spring_stretch(model, before, from.x) + spring_stretch(model, after, to.x));
   const Eigen::Matrix3Xd carried = ((after.R - before.R) * model.body.rest).colwise() + Vec3(after.p - before.p);
-  return sum - model.springs.cwiseProduct(drawn).cwiseProduct(carried).sum();
+  const auto of = [&](const Eigen::Matrix3Xd& stretch) {
+    return -model.springs.cwiseProduct(stretch).cwiseProduct(carried).sum();
+  };
+  return sum += Work{of(spring_stretch(model, before, from.x)), of(spring_stretch(model, after, to.x))};
 }
 
 /// A force and a moment about a point.
@@ -58,21 +63,22 @@ struct Wrench {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
 };
 
-/// Work of a wrench as a frame carries its point from p.
-double work_of(const Wrench& own, const Placement& carried, const Vec3& p) {
-  return own.force.dot(apply(carried, p) - p) + own.moment.dot(lie::log(carried.R));
-}
+/// A frame's motion over the step, as one of the world: x -> carried x.
+struct Carry {
+  Placement carried;
 
-/// Which parts of a force at the start and at the end of a step its work counts with: the mean of both, or half of what
-/// it changes by.
-struct Share {
-  double before = 0.5, after = 0.5;
+  Carry(const StepContext& context, int frame)
+      : carried(compose(context.moved(frame), inverse(moved(context.model, context.start, frame)))) {}
+  /// Work of a wrench as the frame carries its point from p.
+  double work_from(const Wrench& own, const Vec3& p) const { return of(own, apply(carried, p) - p); }
+  /// As it carries its point to p.
+  double work_to(const Wrench& own, const Vec3& p) const { return of(own, p - apply(inverse(carried), p)); }
+
+ private:
+  double of(const Wrench& own, const Vec3& way) const {
+    return own.force.dot(way) + own.moment.dot(lie::log(carried.R));
+  }
 };
-
-/// What a frame does to the world over the step.
-Placement carried_by(const StepContext& context, int frame) {
-  return compose(context.moved(frame), inverse(moved(context.model, context.start, frame)));
-}
 
 /// With which a rod's base is held: the opposite of what the rod exerts on it.
 Wrench held_by_base(const rod::Configuration& shape, const RodState& state) {
@@ -91,15 +97,15 @@ Wrench held_by_attachment(const TieModel& tie, const rod::Mat3& axes, const Eige
   return own;
 }
 
-/// Work of frames that move bases of rods and cables, attachments and obstacles. Without `touches` contacts are as the
-/// state has them.
-double work_of_frames(const StepContext& context, const State& next, const std::vector<Touch>& touches, Share share) {
+/// Work of frames that move bases of rods and cables, attachments and obstacles.
+Work work_of_frames(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
   const Model& model = context.model;
   const auto moves = [&model](int frame) { return frame >= 0 && model.scene.frames[frame].second.motion.has_value(); };
-  double sum = 0.0;
+  Work sum;
+  // Of a wrench about what the frame carries from p.
   const auto add = [&](const Wrench& before, const Wrench& after, int frame, const Vec3& p) {
-    const Placement carried = carried_by(context, frame);
-    sum += share.before * work_of(before, carried, p) + share.after * work_of(after, carried, p);
+    const Carry carry(context, frame);
+    sum += Work{carry.work_from(before, p), carry.work_from(after, p)};
   };
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     if (!moves(model.rods[i].frame)) continue;
@@ -128,30 +134,31 @@ double work_of_frames(const StepContext& context, const State& next, const std::
     add(held_by_attachment(tie, before.R, context.start.lambda), held_by_attachment(tie, after.R, next.lambda),
         tie.frame, before.p);
   }
-  // What an obstacle presses with, where it presses.
-  const auto pressed = [&](const ContactState& contact, const Vec3& force, const Vec3& point, double part) {
+  // What an obstacle presses with, where it presses: at the start of its way there, or at the end.
+  const auto pressed = [&](const ContactState& contact, const Vec3& force, const Vec3& point, bool at_end) {
     const PairModel& pair = model.pairs[contact.pair];
     for (const Collider& own : {pair.a, pair.b}) {
       if (own.kind != Collider::Kind::obstacle || !moves(model.obstacles[own.number].frame)) continue;
       const bool is_a = own == (contact.on_second ? pair.b : pair.a);
       const Wrench by_it{is_a ? Vec3(-force) : force, Vec3::Zero()};
-      sum += part * work_of(by_it, carried_by(context, model.obstacles[own.number].frame), point);
+      const Carry carry(context, model.obstacles[own.number].frame);
+      sum += at_end ? Work{0.0, carry.work_to(by_it, point)} : Work{carry.work_from(by_it, point), 0.0};
     }
   };
-  for (const ContactState& own : context.start.contacts) pressed(own, own.force, own.point, share.before);
+  for (const ContactState& own : context.start.contacts) pressed(own, own.force, own.point, false);
   const bool at_iterate = touches.size() == next.contacts.size();
   for (std::size_t i = 0; i < next.contacts.size(); ++i) {
     const ContactState& own = next.contacts[i];
-    pressed(own, at_iterate ? touches[i].force : own.force, at_iterate ? touches[i].point_b : own.point, share.after);
+    pressed(own, at_iterate ? touches[i].force : own.force, at_iterate ? touches[i].point_b : own.point, true);
   }
   return sum;
 }
 
 }  // namespace
 
-double work(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
+Work work(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
   const Model& model = context.model;
-  double sum = 0.0;
+  Work sum;
   // What is applied from the start acts in full over the first step. Parts of a step and static paths begin with
   // nothing.
   const bool whole = model.scene.analysis != Analysis::statics && context.h > 0.999 * model.scene.time.step;
@@ -160,8 +167,8 @@ double work(const StepContext& context, const State& next, const std::vector<Tou
     const ActuatorModel& actuator = model.actuators[i];
     const double force =
         first && actuator.told_force() ? told_at(actuator.drive, context.start.time) : context.start.actuators[i];
-    const double moved = motor_position(model, next, actuator) - motor_position(model, context.start, actuator);
-    sum += 0.5 * (force + next.actuators[i]) * moved;
+    const double way = motor_position(model, next, actuator) - motor_position(model, context.start, actuator);
+    sum += Work{force * way, next.actuators[i] * way};
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
     const double before = first ? told_at(model.loads[i].factor, context.start.time) : context.start.loads[i];
@@ -170,37 +177,11 @@ double work(const StepContext& context, const State& next, const std::vector<Tou
   }
   if (std::any_of(model.scene.frames.begin(), model.scene.frames.end(),
                   [](const auto& frame) { return frame.second.motion.has_value(); }))
-    sum += work_of_frames(context, next, touches, {});
+    sum += work_of_frames(context, next, touches);
   for (std::size_t i = 0; i < model.solids.size(); ++i) sum += work_of_supports(context, next, static_cast<int>(i));
   for (const Grip& grip : context.command.grips) {
     const Vec3 from = context.start.solids[grip.solid].x.col(grip.node), to = next.solids[grip.solid].x.col(grip.node);
-    sum += grip.stiffness * (grip.to - 0.5 * (from + to)).dot(to - from);
-  }
-  return sum;
-}
-
-double work_uncertainty(const StepContext& context, const State& next) {
-  const Model& model = context.model;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
-    const double moved =
-        motor_position(model, next, model.actuators[i]) - motor_position(model, context.start, model.actuators[i]);
-    sum += 0.5 * std::abs(next.actuators[i] - context.start.actuators[i]) * std::abs(moved);
-  }
-  for (std::size_t i = 0; i < model.loads.size(); ++i) {
-    const double jump = context.command.loads[i] - context.start.loads[i];
-    if (jump == 0.0) continue;
-    sum += std::abs(
-        std::visit([&](const auto& load) { return work_of(load, context, next, 0.0, jump); }, model.loads[i].on));
-  }
-  sum += std::abs(work_of_frames(context, next, {}, {-0.5, 0.5}));
-  for (std::size_t i = 0; i < model.solids.size(); ++i) {
-    Eigen::Index held = 0;
-    solid::each_held(model.solids[i].body, [&](int axis, int node) {
-      sum += 0.5 * std::abs(next.solids[i].reaction[held] - context.start.solids[i].reaction[held]) *
-             std::abs(next.solids[i].x(axis, node) - context.start.solids[i].x(axis, node));
-      ++held;
-    });
+    sum += Work{grip.stiffness * (grip.to - from).dot(to - from), grip.stiffness * (grip.to - to).dot(to - from)};
   }
   return sum;
 }

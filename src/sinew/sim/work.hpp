@@ -1,22 +1,45 @@
 // The work that is put into rods, solids and bodies over a step.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "sinew/sim/contacts.hpp"
 
 namespace sinew {
 
-/// [J] Work of actuators, loads, supports, mouse springs, and frames that move bases of rods, attachments and
-/// obstacles, over the step, by the mean of their forces at its ends times what they move:
-///
-///     W = sum 1/2 (f_start + f_end) . (x_end - x_start),      of turns 1/2 (m_start + m_end) . log(R_end R_start^T).
-///
-/// `touches` are the contacts of the end. With it `energy_balance` is whole: what is missing has been dissipated.
-double work(const StepContext& context, const State& next, const std::vector<Touch>& touches);
+/// [J] Work over a step, with forces as they are at its start, and at its end.
+struct Work {
+  double start = 0.0, end = 0.0;
 
-/// [J] By how much the work of actuators, loads, supports and frames that counts with the mean may be beside that of a
-/// force that jumps within the step: the sum of 1/2 |f_end - f_start| |x_end - x_start|.
-double work_uncertainty(const StepContext& context, const State& next);
+  /// Second order in the step: what energies are balanced with.
+  double mean() const { return 0.5 * (start + end); }
+  /// The most that energy may rise by. Where potentials are convex along the step, that is the work with the forces at
+  /// its end, however large it is and however forces f jump in it: backward Euler's step
+  ///
+  ///     M (v' - v)/h = f' - dU/dx(x'),      x' - x = h v',
+  ///
+  /// times x' - x is
+  ///
+  ///     T' - T + 1/2 |v' - v|^2_M  =  f'.(x' - x) - dU/dx(x').(x' - x)  <=  f'.(x' - x) - (U' - U).
+  ///
+  /// Where one is concave (a column that buckles as it is pushed, and pushes back less and less), the work lies between
+  /// those with both.
+  double bound() const { return std::max(start, end); }
+
+  Work& operator+=(const Work& other) {
+    start += other.start;
+    end += other.end;
+    return *this;
+  }
+};
+
+/// Work of actuators, loads, supports, mouse springs, and frames that move bases of rods, attachments and obstacles,
+/// over the step: forces times what they move,
+///
+///     f . (x_end - x_start),      of turns m . log(R_end R_start^T).
+///
+/// `touches` are the contacts of the end. With its mean `energy_balance` is whole: what is missing has been dissipated.
+Work work(const StepContext& context, const State& next, const std::vector<Touch>& touches);
 
 }  // namespace sinew
