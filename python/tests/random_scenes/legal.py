@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from typing import Any
 
@@ -182,6 +183,13 @@ def bundle(random_: random.Random, scene: Scene, duration: float) -> None:
         scene["couplings"] = [{"tie": {"rod": "r0", "at": s, "other": "r1", "other_at": s, "along": ["y", "z"]}}]
 
 
+def extent(scene: Scene) -> float:
+    """[m] of the box about paths of rods and centres of bodies: the scene's size, or less."""
+    points = [p for rod in scene.get("rods", {}).values() for p in rod["path"]]
+    points += [body["pose"]["translate"] for body in scene.get("bodies", {}).values() if "pose" in body]
+    return math.dist(*([f(axis) for axis in zip(*points)] for f in (min, max))) if points else 0.0
+
+
 def legal(random_: random.Random) -> tuple[Scene, Judge]:
     """Objects, analyses and solvers at random."""
     what = random_.choice([finger, arm, arm, heap, heap, trunk, chambers, glued, pressed, bundle, bundle])
@@ -212,7 +220,9 @@ def legal(random_: random.Random) -> tuple[Scene, Judge]:
         if not linearised and summary["largest_violation_m"] > 1e-8:
             told.append(f"converged with constraints off by {summary['largest_violation_m']:.3g} m")
         deep = summary.get("contact", {}).get("deepest_penetration_m", 0.0)
-        if deep > 1e-5 and "penetration" not in codes and "overlap_at_start" not in codes:
+        # One linearisation may leave 1e-4 of the scene's size (docs/contact.md).
+        allowed = max(1e-5, 1e-4 * extent(scene)) if linearised else 1e-5
+        if deep > allowed and "penetration" not in codes and "overlap_at_start" not in codes:
             told.append(f"overlaps of {1e3 * deep:.3g} mm without a word")
         for row in rows:
             lies, who = overlap.deepest(scene, row)
