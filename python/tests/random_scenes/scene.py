@@ -82,7 +82,7 @@ def table(h: float, steps: int, u: Vec) -> dict[str, Any]:
 
 
 def from_nowhere(rows: list[Row]) -> list[str]:
-    """Energy that was neither there nor put in, beyond a few thousandths of the most there was."""
+    """Energy that was neither there nor put in, beyond a few thousandths of the most there was, by the run's columns."""
     if not rows or "energy.work_bound" not in rows[0]:
         return []
     most, least = 0.0, math.inf

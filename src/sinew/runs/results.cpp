@@ -297,8 +297,8 @@ double view_interval(const Scene& scene) {
 namespace {
 
 /// Energy that comes from nowhere: kinetic, elastic and weight less the most that work may have been rises above what
-/// it was. Backward Euler does not let it (sim/work.hpp), contact takes energy or leaves it; long linearised steps
-/// and rods that snap may not.
+/// it was (sim/work.hpp). It does not in short steps; in long ones rods that snap or buckle gain energy, bodies that
+/// turn while they touch, and all that is linearised.
 void add_energy_gain(const Model& model, const std::vector<io::RecordedStep>& steps, std::vector<Warning>& warnings) {
   constexpr double kGain = 1e-3;  // of the largest kinetic and elastic energy so far
   // What overlaps at the start is lifted apart, slowly, and warned of already.

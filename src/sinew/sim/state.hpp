@@ -62,7 +62,7 @@ struct PointState {
 
 /// What has been put into the rods and solids since the start [J].
 struct Energies {
-  double work = 0.0;        ///< by motors, loads, supports and frames (sim/work.hpp)
+  double work = 0.0;        ///< by all that does work (sim/work.hpp)
   double work_bound = 0.0;  ///< the most that it may have been
 };
 

@@ -102,7 +102,7 @@ Work work_of_frames(const StepContext& context, const State& next, const std::ve
   const Model& model = context.model;
   const auto moves = [&model](int frame) { return frame >= 0 && model.scene.frames[frame].second.motion.has_value(); };
   Work sum;
-  // Of a wrench about what the frame carries from p.
+  // Of wrenches at a point that the frame carries from p.
   const auto add = [&](const Wrench& before, const Wrench& after, int frame, const Vec3& p) {
     const Carry carry(context, frame);
     sum += Work{carry.work_from(before, p), carry.work_from(after, p)};
