@@ -339,6 +339,11 @@ TEST(Faults, long_step) {
   const RecordedRun converged = fault("long_step", {"newton={}"});
   EXPECT_EQ(converged.warning("linearisation_off"), nullptr);
   EXPECT_EQ(converged.warning("linearised_step_off"), nullptr);
+  // Where the converged step is found in parts alone.
+  const RecordedRun stiffer = fault(
+      "long_step", {"solids.finger.material.young=1.889 MPa", "actuators.pull.displacement.values=[0, 5.614 mm]"});
+  ASSERT_TRUE(stiffer.warning("linearised_step_off"));
+  EXPECT_NEAR(stiffer.warning("linearised_step_off")->value, 0.25, 0.05);
 }
 
 // Normals of chords, and of faces beside an edge: axial force +84 %.

@@ -254,7 +254,7 @@ bool leaves_much(const Model& model, const StepReport& step) {
 }
 
 void warn_of_linearisation(const Model& model, double time, StepReport& report) {
-  if (!(report.off > kLinearisedOff)) return;
+  if (!(report.off > kLinearisedOff) || std::isinf(report.off)) return;  // (that it left much stands there already)
   Warnings(time, report.warnings)
       .add({.code = "linearised_step_off",
             .where = "newton",

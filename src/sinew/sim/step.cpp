@@ -112,19 +112,37 @@ Apart apart(const Model& model, const State& state, const State& other) {
 }
 
 /// Makes the step of Memory::context, which Memory::iterate has made by linearisations, once more until it converges,
-/// with the same commands: how far that ends beside it (`StepReport::off`); 0 where it does not end.
+/// with the same commands and in as many parts as that takes, eight at most: how far that ends beside it
+/// (`StepReport::off`); infinite where it does not end.
 double off_converged(Memory& memory, NewtonRules rules) {
-  const Model& model = memory.context.model;
+  constexpr int kMostParts = 8;
+  StepContext& context = memory.context;
+  const Model& model = context.model;
   rules.limit = model.scene.newton.limit;
   rules.fixed = false;
   rules.inverse = nullptr;
   Iterate linearised = memory.iterate;
-  begin_step(memory);
-  double off = 0.0;
-  if (accepted(newton([](double, StepContext&) {}, memory, rules, memory.iterate).status)) {
+  const State start = context.start;
+  const Command command = context.command, before = command_of(model, start);
+  const double h = context.h;
+  const auto converges_in = [&](int parts) {
+    for (int part = 1; part <= parts; ++part) {
+      if (part > 1) std::swap(context.start, memory.iterate.state);
+      context.set(part == parts ? command : between(before, command, static_cast<double>(part) / parts), h / parts);
+      begin_step(memory);
+      if (!accepted(newton([](double, StepContext&) {}, memory, rules, memory.iterate).status)) return false;
+    }
+    return true;
+  };
+  double off = INFINITY;
+  for (int parts = 1; parts <= kMostParts && std::isinf(off); parts *= 2) {
+    context.start = start;
+    if (!converges_in(parts)) continue;
     const Apart most = apart(model, memory.iterate.state, linearised.state);
-    if (most.states > 1e-9 * model.size) off = most.states / std::max(most.way, 1e-9 * model.size);
+    off = most.states > 1e-9 * model.size ? most.states / std::max(most.way, 1e-9 * model.size) : 0.0;
   }
+  context.start = start;
+  context.set(command, h);
   memory.iterate = std::move(linearised);
   return off;
 }

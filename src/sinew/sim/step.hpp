@@ -119,8 +119,8 @@ struct StepReport {
   bool redundant = false;  ///< constraint rows depended on each other
   bool at_floor = false;   ///< forces were balanced to their rounding, not to the tolerance (`convergence_of`)
   /// [-] of an accepted step of `newton: n` that left much: how far a converged step from the same start ends beside
-  /// it, as a part of the way that things have moved since the run began; 0 where nothing was left, or none was made
-  /// (Effort::compared).
+  /// it, as a part of the way that things have moved since the run began; infinite where none was found, 0 where
+  /// nothing was left, or none was made (Effort::compared).
   double off = 0.0;
   bool judged = false;            ///< it was looked for what a user should be warned of (not with Evaluation::motion)
   std::vector<Warning> warnings;  ///< of an accepted step

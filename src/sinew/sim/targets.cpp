@@ -145,7 +145,9 @@ std::string describe(const Model& model, const Aim& aim) {
       return "";
     case Aim::Outcome::reached:
       text = "reached";
-      if (aim.off > 0.0) {
+      if (std::isinf(aim.off)) {
+        text += " by a linearisation, beside which no converged step was found";
+      } else if (aim.off > 0.0) {
         char off[64];
         std::snprintf(off, sizeof off, " by a linearisation that is %.2g %% off", 100.0 * aim.off);
         text += off;
