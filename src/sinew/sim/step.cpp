@@ -122,8 +122,7 @@ double off_converged(Memory& memory, NewtonRules rules) {
   rules.fixed = false;
   rules.inverse = nullptr;
   Iterate linearised = memory.iterate;
-  const State start = context.start;
-  const Command command = context.command, before = command_of(model, start);
+  const Command command = context.command, before = command_of(model, context.start);
   const double h = context.h;
   const auto converges_in = [&](int parts) {
     for (int part = 1; part <= parts; ++part) {
@@ -135,13 +134,16 @@ double off_converged(Memory& memory, NewtonRules rules) {
     return true;
   };
   double off = INFINITY;
-  for (int parts = 1; parts <= kMostParts && std::isinf(off); parts *= 2) {
-    context.start = start;
-    if (!converges_in(parts)) continue;
-    const Apart most = apart(model, memory.iterate.state, linearised.state);
-    off = most.states > 1e-9 * model.size ? most.states / std::max(most.way, 1e-9 * model.size) : 0.0;
+  {
+    State start = context.start;
+    const Lent lent(start, context.start);  // from here on `start` is what comes back
+    for (int parts = 1; parts <= kMostParts && std::isinf(off); parts *= 2) {
+      context.start = start;
+      if (!converges_in(parts)) continue;
+      const Apart most = apart(model, memory.iterate.state, linearised.state);
+      off = most.states > 1e-9 * model.size ? most.states / std::max(most.way, 1e-9 * model.size) : 0.0;
+    }
   }
-  context.start = start;
   context.set(command, h);
   memory.iterate = std::move(linearised);
   return off;
