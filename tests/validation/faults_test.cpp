@@ -410,9 +410,10 @@ TEST(Faults, nothing_beyond_the_tip) {
 
 // A bent rod that slides: the configurational force M^2 / 2 B is a sawtooth of 0.08 to 0.77 N.
 TEST(Faults, sleeve_ripple) {
-  const auto ripple = [](int sections, int order) {
-    const RecordedRun run = fault(
-        "sleeve_ripple", {"rods.rod.sections=" + std::to_string(sections), "rods.rod.order=" + std::to_string(order)});
+  const auto ripple = [](const std::string& sections, const std::string& order, const std::string& couplings = "") {
+    std::vector<std::string> changes = {"rods.rod.sections=" + sections, "rods.rod.order=" + order};
+    if (!couplings.empty()) changes.push_back("couplings=" + couplings);
+    const RecordedRun run = fault("sleeve_ripple", changes);
     EXPECT_TRUE(run.done()) << run.why();
     const std::vector<double> turn = run.signal("turn.y"), force = run.signal("base.x");
     double most = 0.0;  // beside the exact P sin(theta_tip)
@@ -424,11 +425,24 @@ TEST(Faults, sleeve_ripple) {
     EXPECT_EQ(run.warning("sliding_force_ripples", "rods.rod") != nullptr, most > 0.1) << sections << ' ' << order;
     return most;
   };
-  EXPECT_GT(ripple(70, 0), 0.5);
-  EXPECT_LT(ripple(140, 0), 0.1);
-  EXPECT_LT(ripple(280, 0), 0.02);
-  EXPECT_LT(ripple(140, 1), 0.02);
-  EXPECT_LT(ripple(70, 2), 0.02);
+  // Points of several couplings are as far apart as those of one; sections that are drawn in count as those within.
+  std::string apart, fine = "[0";
+  for (int i = 0; i <= 20; ++i) {
+    apart += (i == 0 ? "[" : ", ") +
+             ("{slide: {rod: rod, solid: block, anchor_tip: none, points: [" + std::to_string(0.3 + 0.01 * i) + "]}}");
+  }
+  for (int i = 1; i <= 200; ++i) fine += ", " + std::to_string(0.0025 * i);
+  for (int i = 1; i <= 10; ++i) fine += ", " + std::to_string(0.5 + 0.02 * i);
+  EXPECT_GT(ripple("70", "0", apart + "]"), 0.5);
+  EXPECT_GT(ripple(fine + "]", "0"), 0.5);
+  EXPECT_GT(ripple("70", "0"), 0.5);
+  EXPECT_LT(ripple("140", "0"), 0.1);
+  EXPECT_LT(ripple("280", "0"), 0.02);
+  EXPECT_LT(ripple("140", "1"), 0.02);
+  EXPECT_LT(ripple("70", "2"), 0.02);
+  // (The order of the other bending does not help.)
+  EXPECT_GT(ripple("70", "{bending_y: 2, bending_z: 0}"), 0.5);
+  EXPECT_LT(ripple("70", "{bending_y: 0, bending_z: 2}"), 0.02);
 }
 
 // Friction of a rod with bending stiffness in a channel of points grows as 1 / spacing.
@@ -446,6 +460,10 @@ TEST(Faults, passes_through_itself) {
   ASSERT_TRUE(run.warning("solid_crosses_itself", "solids.finger"));
   EXPECT_THAT(run.warning("solid_crosses_itself")->remedy, HasSubstr("between: [finger, finger]"));
   EXPECT_TRUE(run.warning("thread_pushes", "actuators.pull"));
+  // Whichever way its motor counts.
+  const RecordedRun along =
+      fault("passes_through_itself", {"actuators.pull.axis=x", "actuators.pull.displacement.values=[0, -60 mm]"});
+  EXPECT_TRUE(along.warning("thread_pushes", "actuators.pull"));
   const RecordedRun less =
       fault("passes_through_itself", {"actuators.pull.displacement.values=[0 mm, 10 mm]", "time.duration=1 s"});
   EXPECT_TRUE(less.warnings.empty());

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sinew/sim/motors.hpp"
 #include "sinew/sim/rod_rows.hpp"
 #include "validation/rods.hpp"
 
@@ -88,6 +89,77 @@ TEST(Redundancy, lengths_that_contradict_each_other_are_named) {
     EXPECT_EQ(trace.failure.status, Status::inconsistent);
     EXPECT_THAT(trace.failure.detail, testing::StartsWith("actuators.t0, actuators.t2 contradict each other by"));
   }
+}
+
+/// The same with a weight at its tip, across the plane in which the first two tendons bend it: it twists.
+Scene loaded_robot(int count, bool elongation, Analysis analysis) {
+  Scene scene = tendon_robot(count, elongation, analysis);
+  RodLoad weight;
+  weight.rod = "rod";
+  weight.at = 0.2;
+  weight.force = Vec3(0.0, count == 2 ? 0.05 : 0.02, 0.03);
+  weight.factor = Table{{0.0, 1.0}, {0.0, 1.0}};
+  scene.loads.emplace_back("weight", weight);
+  return scene;
+}
+
+// Twisted rods are longer by the tendons' measure (d^2 tau^2 / 2), which rows that depend on each other at the start
+// would have to keep out by forces of any size: 1e6 N and more, and no torsion.
+TEST_P(TendonRobot, forces_stay_small_where_the_rod_twists) {
+  const auto [count, elongation] = GetParam();
+  Eigen::VectorXd first, reference;
+  for (const Analysis analysis : {Analysis::statics, Analysis::quasi_static, Analysis::dynamic}) {
+    SCOPED_TRACE(static_cast<int>(analysis));
+    const Solved solved = solve(loaded_robot(count, elongation, analysis));
+    ASSERT_TRUE(solved.done());
+    const Eigen::VectorXd tensions =
+        Eigen::Map<const Eigen::VectorXd>(solved.end().actuators.data(), static_cast<Eigen::Index>(count));
+    const Vec3 tip = solved.tip();
+    if (first.size() == 0) {
+      first = tensions;
+      reference = tip;
+    }
+    EXPECT_LT(tensions.cwiseAbs().maxCoeff(), 20.0);
+    EXPECT_LT((tensions - first).cwiseAbs().maxCoeff(), 1e-6 * first.cwiseAbs().maxCoeff());
+    EXPECT_LT((tip - reference).norm(), 1e-7);
+    EXPECT_EQ(solved.model.redundant.empty(), !(count > (elongation ? 3 : 2) || (count == 2 && !elongation)));
+  }
+}
+
+// And the shape is that of a rod that can stretch a little, which needs no such care.
+TEST(Redundancy, a_rod_that_twists_goes_where_one_that_can_stretch_goes) {
+  Vec3 tip[2];
+  for (const bool elongation : {false, true}) {
+    const Solved solved = solve(loaded_robot(2, elongation, Analysis::quasi_static));
+    ASSERT_TRUE(solved.done());
+    tip[elongation ? 1 : 0] = solved.tip();
+    EXPECT_GT(std::abs(solved.end().rods[0].q[0]), 0.5);  // [1/m] torsion
+  }
+  EXPECT_LT((tip[0] - tip[1]).norm(), 5e-4);
+}
+
+// One tendon is told its length, the other one's is sought: it must be the opposite one, from the first step on.
+TEST(Redundancy, a_sought_length_agrees_with_one_that_is_told) {
+  Scene scene = tendon_robot(2, false, Analysis::quasi_static);
+  scene.time = {0.05, 1.0};
+  Actuator& sought = scene.actuators[0].second;
+  sought.drive = Sought{};
+  sought.limits.displacement = Span{-0.01, 0.01};
+  sought.limits.force = Span{-5.0, 20.0};
+  std::get<Table>(scene.actuators[1].second.drive).values = {0.0, -0.004};
+  Output tip;
+  tip.rod = "rod";
+  tip.at = 0.2;
+  scene.outputs.emplace_back("tip", tip);
+  Target target;
+  target.output = "tip";
+  target.at = Track{{0.0, 1.0}, {Vec3(0.2, 0.0, 0.0), Vec3(0.17, 0.0, 0.08)}};
+  scene.targets.push_back(target);
+  const Solved solved = solve(scene);
+  ASSERT_TRUE(solved.done());
+  EXPECT_NEAR(motor_positions(solved.model, solved.end())[0], 0.004, 1e-8);
+  EXPECT_LT(std::abs(solved.end().actuators[0]), 5.0);
+  EXPECT_EQ(find_warning(solved.model.warnings, "contradicting_commands"), nullptr);
 }
 
 TEST(Redundancy, one_linearisation_a_step_takes_the_smallest_forces_too) {

@@ -135,6 +135,29 @@ TEST(Stability, OfAPinOnAHingeIsThatOfAPendulum) {
   }
 }
 
+// And nothing resists it where the path of equilibria begins, without its weight: that is no chance of where it rests.
+TEST(Stability, OfAPinThatHangsIsNotJudgedWithoutItsWeight) {
+  Scene scene = test::lone_rod(7800.0, 2);
+  scene.analysis = Analysis::statics;
+  scene.time = {0.5, 1.0};
+  scene.gravity = Vec3(0, 0, -9.81);
+  Rod& pin = scene.rods[0].second;
+  pin.path = {Vec3::Zero(), Vec3(0, 0, -0.01)};
+  pin.base = {BaseAxis::turn_y};
+  pin.section = Circle{4e-3};
+  pin.material.young = 2e11;
+  scene.outputs.clear();
+  const Model model = build(scene, test::read_block);
+  Workspace workspace(model);
+  State state = initial_state(model);
+  for (int step = 0; !run_whole(scene, state.time) && step < 100; ++step) {
+    const StepReport report = advance(model, workspace, state);
+    ASSERT_TRUE(accepted(report.status)) << report.detail;
+    EXPECT_EQ(find_warning(report.warnings, "free_motion"), nullptr) << state.time;
+  }
+  EXPECT_TRUE(run_whole(scene, state.time));
+}
+
 TEST(Stability, IsToldAsNaturalFrequenciesSay) { look_at(60, 1); }
 TEST(Stability, IsToldAsNaturalFrequenciesSayManyTimes_slow) { look_at(300, 2); }
 

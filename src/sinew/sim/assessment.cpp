@@ -37,6 +37,26 @@ class Warnings {
   std::vector<Warning>& list_;
 };
 
+/// A thin rod that slides in a body cannot push to speak of.
+bool is_thread(const RodModel& rod) {
+  return !rod.slides.empty() && rod::radius_at(rod.rod.profile, 0.0) <= 0.02 * rod.rod.length();
+}
+
+void warn_of_thread(const Model& model, int number, const std::string& where, double push, Warnings& warnings) {
+  const RodModel& rod = model.rods[number];
+  if (!(push > 0.0) || !is_thread(rod)) return;
+  const double limit = 1e-3 * buckling_load(rod.rod);
+  if (push < limit) return;
+  warnings.add({.code = "thread_pushes",
+                .where = where,
+                .message = "rods." + rod.name + " is as thin as a thread and pushes with " + three_digits(push) +
+                           " N; a real one would go slack",
+                .remedy = "pull it, by force instead of displacement if need be",
+                .value = push,
+                .limit = limit,
+                .unit = "N"});
+}
+
 void assess_cables(const Model& model, const State& state, Warnings& warnings) {
   // A push by rounding is none: beside the largest force of a motor or cable, and what a soft body bears at all.
   double largest = 0.0;
@@ -56,27 +76,17 @@ void assess_cables(const Model& model, const State& state, Warnings& warnings) {
                     .limit = rounding,
                     .unit = "N"});
     }
-    // A thin rod whose base is held or drawn out of the body along -x is a thread, which cannot push to speak of. One
-    // that is pushed in, or told to push, is meant to.
-    if (own.tendon || own.turns() || model.scene.actuators[i].second.axis || own.line.rod < 0 || own.told_force() ||
-        !(force < -rounding))
-      continue;
-    if (motor_position(model, state, own) < -1e-9 * model.size) continue;
-    const RodModel& rod = model.rods[own.line.rod];
-    const bool slides = std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& point) {
-      return point.line == own.line && point.unknown >= 0;
-    });
-    const double length = rod.rod.length(), radius = rod::radius_at(rod.rod.profile, 0.0);
-    const double limit = 1e-3 * buckling_load(rod.rod);
-    if (!slides || radius > 0.02 * length || -force < limit) continue;
-    warnings.add({.code = "thread_pushes",
-                  .where = "actuators." + own.name,
-                  .message = "rods." + rod.name + " is as thin as a thread and pushes with " + three_digits(-force) +
-                             " N; a real one would go slack",
-                  .remedy = "pull it, by force instead of displacement if need be",
-                  .value = -force,
-                  .limit = limit,
-                  .unit = "N"});
+    if (own.tendon || own.turns() || own.line.rod < 0 || own.told_force() || own.axis != 0) continue;
+    // What is pushed in, or told to push, is meant to.
+    const double inwards = model.scene.actuators[i].second.axis ? 1.0 : -1.0;
+    if (inwards * motor_position(model, state, own) > 1e-9 * model.size) continue;
+    warn_of_thread(model, own.line.rod, "actuators." + own.name, inwards * force, warnings);
+  }
+  for (int i = 0; i < static_cast<int>(model.rods.size()); ++i) {
+    const RodModel& rod = model.rods[i];
+    const bool carried = rod.frame >= 0 && model.scene.frames[rod.frame].second.motion.has_value();
+    if (rod.rod.base_coordinates() > 0 || carried || !is_thread(rod)) continue;
+    warn_of_thread(model, i, "rods." + rod.name, -internal_wrench(model, state, i, 0.0)[3], warnings);
   }
   for (const GeometricCableModel& cable : model.cables) {
     const double tension = state.lambda[cable.length_row];
@@ -172,8 +182,8 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
     for (std::size_t i = 0; i < own.rows.size(); ++i) {
       if (own.null.row(static_cast<Eigen::Index>(i)).norm() > 1e-6) dependent.push_back(own.rows[i]);
     }
-    const bool known = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const std::vector<int>& rows) {
-      return std::includes(rows.begin(), rows.end(), dependent.begin(), dependent.end());
+    const bool known = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const RedundantGroup& group) {
+      return std::includes(group.rows.begin(), group.rows.end(), dependent.begin(), dependent.end());
     });
     if (known) continue;
     warnings.add({.code = "redundant_constraints",
@@ -230,7 +240,9 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   assess_redundancy(model, here, warnings);
   for (Warning& own : assess_sliding_rods(model, next)) warnings.add(std::move(own));
   for (Warning& own : assess_touched_rods(model, next)) warnings.add(std::move(own));
-  if (report.stability_known) assess_free(model, here, next, warnings);
+  // (Where a path of equilibria begins, nothing acts yet.)
+  const bool begins = model.scene.analysis == Analysis::statics && next.time == 0.0;
+  if (report.stability_known && !begins) assess_free(model, here, next, warnings);
   if (report.unstable) {
     warnings.add({.code = "unstable",
                   .where = "",
@@ -258,7 +270,7 @@ void warn_of_linearisation(const Model& model, double time, StepReport& report) 
   Warnings(time, report.warnings)
       .add({.code = "linearised_step_off",
             .where = "newton",
-            .message = "the last linearised step is " + three_digits(100.0 * report.off) +
+            .message = "the last linearised step beyond a limit is " + three_digits(100.0 * report.off) +
                        " % off: so far beside it, as a part of the way from the start, ends a converged one",
             .remedy = remedy_of_linearisation(model),
             .value = report.off,

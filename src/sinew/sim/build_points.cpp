@@ -247,18 +247,6 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   }
   const std::vector<PointModel> kept = independent_points(model, candidates, facts);
   facts.kept = static_cast<int>(kept.size());
-  if (line.rod >= 0) {
-    std::vector<double> sliding;
-    for (const PointModel& point : kept) {
-      if (!point.fixed) sliding.push_back(point.abscissa);
-    }
-    std::sort(sliding.begin(), sliding.end());
-    const SlideResolution coarsest = slide_resolution(model.rods[line.rod].rod, sliding);
-    facts.spacing = coarsest.spacing;
-    facts.sections = coarsest.sections;
-    facts.order = coarsest.order;
-    facts.rubs = slide.friction > 0.0 && !sliding.empty();
-  }
   model.points.insert(model.points.end(), kept.begin(), kept.end());
   model.couplings.push_back(facts);
   if (2 * facts.outside > facts.asked)
@@ -283,6 +271,26 @@ void build_coupling(Model& model, int number, const Slide& slide) {
   if (slide.anchor_tip == AnchorTip::pose)
     tie_axes(model, number, line.rod, candidates.back().abscissa, solid, asked.positions.back(),
              candidates.back().where, {}, {0, 1, 2});
+}
+
+void arrange_slides(Model& model) {
+  for (std::size_t k = 0; k < model.points.size(); ++k) {
+    const PointModel& point = model.points[k];
+    if (point.line.rod >= 0 && !point.fixed) model.rods[point.line.rod].slides.push_back(static_cast<int>(k));
+  }
+  for (RodModel& rod : model.rods) {
+    std::stable_sort(rod.slides.begin(), rod.slides.end(),
+                     [&](int a, int b) { return model.points[a].abscissa < model.points[b].abscissa; });
+    std::vector<double> abscissae;
+    for (const int k : rod.slides) abscissae.push_back(model.points[k].abscissa);
+    const SlideResolution coarsest = slide_resolution(rod.rod, abscissae);
+    for (const int k : rod.slides) {
+      CouplingFacts& facts = model.couplings[model.points[k].coupling];
+      facts.spacing = coarsest.spacing;
+      facts.sections = coarsest.sections;
+      facts.order = coarsest.order;
+    }
+  }
 }
 
 }  // namespace sinew::building

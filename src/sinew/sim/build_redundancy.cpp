@@ -21,6 +21,7 @@ double largest_value(const Drive& drive) {
 
 /// What is told to actuators whose rows depend on each other, at all times of their tables.
 void warn_of_contradictions(Model& model, const RedundantRows& redundant) {
+  if (is_chosen(model, redundant.rows) || is_carried(model, redundant.rows)) return;
   std::vector<double> times = {0.0};
   for (const ActuatorModel& actuator : model.actuators) {
     if (!std::binary_search(redundant.rows.begin(), redundant.rows.end(), actuator.row)) continue;
@@ -39,14 +40,14 @@ void warn_of_contradictions(Model& model, const RedundantRows& redundant) {
       when = time;
     }
   }
-  if (!(worst > 1e-6 * model.size)) return;
+  if (!(worst > kContradiction * model.size)) return;
   model.warnings.push_back({.code = "contradicting_commands",
                             .where = name_of_rows(model, redundant.rows),
                             .message = "what they are told contradicts each other by " + text(1e3 * worst) +
                                        " mm at t = " + text(when) + " s: no shape of the robot does both",
                             .remedy = remedy_of_rows(model, redundant.rows),
                             .value = worst,
-                            .limit = 1e-6 * model.size,
+                            .limit = kContradiction * model.size,
                             .unit = "m"});
 }
 
@@ -98,7 +99,8 @@ void look_for_redundant_rows(Model& model, const State& start) {
   Reduced reduced;
   linearize(context, start, {}, reduced);
   const std::vector<std::vector<int>> groups = find_redundant_rows(model, start, reduced.problem);
-  model.redundant = join_by_rods(model, groups);
+  for (const std::vector<int>& rows : join_by_rods(model, groups))
+    model.redundant.push_back(redundant_group(model, start, reduced.problem, rows));
   for (const std::vector<int>& rows : groups) {
     const RedundantRows own = redundant_rows(model, start, reduced.problem, rows);
     if (rows.size() == 1) continue;  // of a row that nothing answers (`warn_of_idle_rows`)

@@ -117,6 +117,8 @@ void check_held(Model& model, int number);
 void build_coupling(Model& model, int number, const Slide& slide);
 void build_coupling(Model& model, int number, const Tie& tie);
 void build_coupling(Model& model, int number, const Glue& glue);
+/// How the points of all couplings stand along rods.
+void arrange_slides(Model& model);
 void build_actuator(Model& model, const std::string& name, const Actuator& actuator);
 void build_load(Model& model, const std::string& name, const Load& load);
 void build_output(Model& model, const std::string& name, const Output& output);

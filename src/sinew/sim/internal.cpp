@@ -95,8 +95,12 @@ double kinetic_energy(const rod::Rod& rod, const RodState& state) {
 }
 
 double buckling_load(const rod::Rod& rod) {
-  const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, 0.0);
-  return std::pow(std::numbers::pi / rod.length(), 2) * std::min(stiffness(1, 1), stiffness(2, 2));
+  double least = INFINITY;  // a stout base does not keep the rest from bending
+  for (const double s : {0.0, 0.5 * rod.length()}) {
+    const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, s);
+    least = std::min({least, stiffness(1, 1), stiffness(2, 2)});
+  }
+  return std::pow(std::numbers::pi / rod.length(), 2) * least;
 }
 
 rod::SectionStress section_stress(const Model& model, const State& state, int number, double s) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sinew/sim/agreement.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
@@ -275,31 +276,21 @@ void Inverse::set_limits(const StepContext& context, const State& iterate, const
 }
 
 void Inverse::add_agreement(const Model& model, const Reduced& reduced) {
-  const auto n = static_cast<Eigen::Index>(model.sought.size());
-  for (const RedundantRows& redundant : reduced.redundant) {
-    for (Eigen::Index k = 0; k < redundant.null.cols(); ++k) {
-      Eigen::RowVectorXd own = Eigen::RowVectorXd::Zero(n);
-      double apart = 0.0;
-      for (std::size_t i = 0; i < redundant.rows.size(); ++i) {
-        const double part = redundant.null(static_cast<Eigen::Index>(i), k);
-        apart += part * reduced.problem.c[redundant.rows[i]];
-        for (Eigen::Index a = 0; a < n; ++a) {
-          if (model.actuators[model.sought[static_cast<std::size_t>(a)]].row == redundant.rows[i]) own[a] = part;
-        }
-      }
-      const double size = own.norm();
-      if (!(size > 0.0)) continue;
-      const Eigen::Index row = problem_.A.rows();
-      problem_.A.conservativeResize(row + 1, n);
-      problem_.C.conservativeResize(row + 1, problem_.C.cols());
-      problem_.A.row(row) = own / size;
-      problem_.C.row(row).setZero();
-      for (Eigen::VectorXd* const vector : {&problem_.lower, &problem_.upper, &problem_.firmness, &problem_.unit})
-        vector->conservativeResize(row + 1);
-      problem_.lower[row] = problem_.upper[row] = apart / size;
-      problem_.firmness[row] = INFINITY;
-      problem_.unit[row] = model.size;
-    }
+  if (reduced.redundant.empty()) return;
+  const auto [A, b] = agreement(model, reduced);
+  for (Eigen::Index k = 0; k < b.size(); ++k) {
+    const double size = A.row(k).norm();
+    if (!(size > 0.0)) continue;
+    const Eigen::Index row = problem_.A.rows();
+    problem_.A.conservativeResize(row + 1, A.cols());
+    problem_.C.conservativeResize(row + 1, problem_.C.cols());
+    problem_.A.row(row) = A.row(k) / size;
+    problem_.C.row(row).setZero();
+    for (Eigen::VectorXd* const vector : {&problem_.lower, &problem_.upper, &problem_.firmness, &problem_.unit})
+      vector->conservativeResize(row + 1);
+    problem_.lower[row] = problem_.upper[row] = b[k] / size;
+    problem_.firmness[row] = INFINITY;
+    problem_.unit[row] = model.size;
   }
 }
 
@@ -434,6 +425,22 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   return solve_there(memory, solid::Tangent::exact, times, steer);
 }
 
+/// Sought commands that agree with those that are told, where rows depend on each other: the nearest to what they are.
+void agree(const Model& model, Memory& memory, const State& state, double time, StageTimes& times, Command& told) {
+  if (model.redundant.empty()) return;
+  StepContext& context = memory.context;
+  context.set(state, told, time - state.time);
+  context.rate = 0.0;
+  memory.iterate.state = state;
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
+  memory.here.evaluate(context, memory.iterate.state, times);
+  const auto [A, b] = agreement(model, memory.here.reduced());
+  if (b.size() == 0) return;
+  const Eigen::VectorXd more = A.completeOrthogonalDecomposition().solve(b);
+  for (std::size_t a = 0; a < model.sought.size(); ++a)
+    told.actuators[model.sought[a]] += more[static_cast<Eigen::Index>(a)];
+}
+
 /// The first round of a step of h, as the paper's.
 bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
                     const Linearization::Steer& steer) {
@@ -453,7 +460,10 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   inverse.begin(model, state, goal, time - state.time);
   Command told = command;
   for (const int actuator : model.sought) told.actuators[actuator] = told_to(model, state, actuator);
+  StageTimes agreeing;
+  agree(model, memory, state, time, agreeing, told);
   StepResult at = equilibrium_step(model, workspace, told, state, time);
+  at.report.times += agreeing;
   if (!accepted(at.report.status)) return at.report;
   // Where friction remembers the way, every trial goes the whole of it.
   const bool remembers = !model.pairs.empty() || !model.rubbing.empty();

@@ -15,16 +15,33 @@ namespace sinew {
 namespace {
 
 /// The compliance of rows that depend on each other, of the model's groups and others.
-void add_redundant(const Model& model, const State& iterate, const std::vector<std::vector<int>>& more,
+void add_redundant(const StepContext& context, const State& iterate, const std::vector<std::vector<int>>& more,
                    Reduced& reduced) {
+  const Model& model = context.model;
   reduced.redundant.clear();
-  for (const auto* const groups : {&model.redundant, &more}) {
-    for (const std::vector<int>& rows : *groups) {
-      RedundantRows own = redundant_rows(model, iterate, reduced.problem, rows);
-      if (own.null.cols() > 0) reduced.redundant.push_back(std::move(own));
-    }
+  reduced.given.resize(0);
+  const auto add = [&reduced](RedundantRows own) {
+    if (own.null.cols() > 0) reduced.redundant.push_back(std::move(own));
+  };
+  for (const RedundantGroup& group : model.redundant) {
+    add(contradicts(model, group, context.command.actuators)
+            ? redundant_rows(model, iterate, reduced.problem, group.rows)
+            : redundant_rows(model, iterate, reduced.problem, group));
   }
-  for (const RedundantRows& own : reduced.redundant) add_compliance(own, model.size / model.bearing, reduced.problem);
+  for (const std::vector<int>& rows : more) add(redundant_rows(model, iterate, reduced.problem, rows));
+  if (reduced.redundant.empty()) return;
+  Eigen::VectorXd given = Eigen::VectorXd::Zero(model.rows);
+  bool gives = false;
+  for (const RedundantRows& own : reduced.redundant) {
+    add_compliance(own, model.size / model.bearing, iterate.lambda, reduced.problem, given);
+    gives |= own.give.size() > 0;
+  }
+  if (!gives) return;
+  reduced.problem.c += given;
+  reduced.given = std::move(given);
+  reduced.violation = 0.0;
+  for (int row = 0; row < model.rows; ++row)
+    reduced.violation = std::max(reduced.violation, std::abs(reduced.problem.c[row]) * arm_of(model, row));
 }
 
 }  // namespace
@@ -73,7 +90,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
       [&](StageTimes& own) {
         Clock clock(own.rods);
         linearize(context, iterate, contacts_.touches, reduced_);
-        add_redundant(context.model, iterate, redundant_, reduced_);
+        add_redundant(context, iterate, redundant_, reduced_);
         if (!then) return;
         clock.next(own.solve);
         factor_.eliminate_chains(reduced_.problem);
@@ -120,7 +137,8 @@ bool Linearization::find_redundant() {
       return std::includes(own.begin(), own.end(), rows.begin(), rows.end());
     };
     const auto& all = context_->model.redundant;
-    return std::any_of(all.begin(), all.end(), holds) || std::any_of(redundant_.begin(), redundant_.end(), holds);
+    return std::any_of(all.begin(), all.end(), [&holds](const RedundantGroup& own) { return holds(own.rows); }) ||
+           std::any_of(redundant_.begin(), redundant_.end(), holds);
   };
   bool more = false;
   for (std::vector<int>& rows : find_redundant_rows(context_->model, *iterate_, reduced_.problem)) {
@@ -132,8 +150,10 @@ bool Linearization::find_redundant() {
 }
 
 const RedundantRows* Linearization::contradicting(double limit) const {
+  if (reduced_.redundant.empty()) return nullptr;
+  const Eigen::VectorXd c = reduced_.as_told();
   for (const RedundantRows& own : reduced_.redundant) {
-    if (own.contradiction(reduced_.problem.c) > limit) return &own;
+    if (own.contradiction(c) > limit) return &own;
   }
   return nullptr;
 }

@@ -314,6 +314,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     const auto number = static_cast<int>(i);
     std::visit([&](const auto& own) { build_coupling(model, number, own); }, scene.couplings[i]);
   }
+  arrange_slides(model);
   number_unknowns(model);
   for (const auto& [name, output] : scene.outputs) build_output(model, name, output);
   for (std::size_t i = 0; i < scene.targets.size(); ++i) build_target(model, static_cast<int>(i));

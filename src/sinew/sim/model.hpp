@@ -82,6 +82,7 @@ struct RodModel {
   int jumps = 0;          ///< places, at most, where its internal forces jump
   Eigen::VectorXd start;  ///< coordinates at t = 0
   std::vector<double> touching;  ///< [m] abscissae that may touch something
+  std::vector<int> slides;       ///< points that slide on it, by their abscissae at t = 0
   double path_deviation = 0;     ///< [m] how far the rod's sections stay off the path they were laid along
 };
 
@@ -260,6 +261,16 @@ struct EffectorModel {
   Eigen::VectorXd start;    ///< [SI] where it is at t = 0
 };
 
+/// Rows that depend on each other at the start of a run (sim/redundancy).
+struct RedundantGroup {
+  std::vector<int> rows;  ///< of lambda, ascending
+  Eigen::MatrixXd null;   ///< combinations that nothing answers there, of rows scaled to length 1: orthonormal columns
+  double give = 0.0;      ///< [m/N] compliance of what would answer them, if the rods could stretch
+  /// Where commands alone say what the rows ask for (no motor chooses): the same combinations of the
+  /// rows as they are, with norm 1. What contradicts them is no matter of posture, and nothing gives way.
+  Eigen::MatrixXd told;
+};
+
 /// What `check` tells a person about one coupling.
 struct CouplingFacts {
   int rod = -1;  ///< or a cable:
@@ -269,7 +280,6 @@ struct CouplingFacts {
   double spacing = INFINITY;       ///< [m] between neighbouring sliding points, the smallest
   double sections = INFINITY;      ///< of the rod between two of them, where these are the fewest
   int order = 0;                   ///< of the bending strains there
-  bool rubs = false;               ///< there is friction in the channel
   std::vector<double> no_unknown;  ///< abscissae of points that touch no free unknown
   std::vector<double> redundant;   ///< abscissae of points that the kept ones of the same element already determine
 };
@@ -294,8 +304,8 @@ struct Model {
   std::vector<LoadModel> loads;
   std::vector<OutputModel> outputs;
   std::vector<CouplingFacts> couplings;
-  std::vector<Warning> warnings;            ///< of the scene
-  std::vector<std::vector<int>> redundant;  ///< groups of rows that depend on each other at the start (sim/redundancy)
+  std::vector<Warning> warnings;          ///< of the scene
+  std::vector<RedundantGroup> redundant;  ///< rows that depend on each other at the start
   int unknowns = 0;  ///< size of z: coordinates of bases, cables and rigid bodies, abscissae, what ties follow
   int first_followed = 0, followed = 0;  ///< of the latter among them
   Eigen::VectorXd arms;                  ///< per unknown z: [m] by which a moment is compared with forces, 1 of forces

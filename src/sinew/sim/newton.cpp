@@ -127,7 +127,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     const RedundantRows* const rows = here.contradicting(left);
     if (!rows) return false;
     report.status = Status::inconsistent;
-    report.detail = describe_contradiction(context.model, *rows, here.reduced().problem.c);
+    report.detail = describe_contradiction(context.model, *rows, here.reduced().as_told());
     return true;
   };
   const auto fail = [&](Status status, std::string detail) {
@@ -215,6 +215,10 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (rules.fixed ? report.newton == rules.limit
                     : report.newton > 0 && converged.met &&
                           contact_error <= context.model.scene.newton.tolerance * context.model.size) {
+      if (!rules.fixed && contradicts(10.0 * context.model.scene.newton.tolerance * context.model.size)) {
+        report.contact = here.contact_report();
+        return report;
+      }
       report.at_floor = !rules.fixed && converged.at_floor;
       if (context.rate == 0.0 && !rules.fixed) {
         // (The last factors are those of the iterate before, where soft motions may not have been at rest yet.)

@@ -29,10 +29,14 @@ struct Reduced {
   std::vector<RodParts> rods;
   std::vector<rod::CableLength> cables;
   std::vector<RedundantRows> redundant;  ///< rows that depend on each other here; W has their compliance already
-  double largest = 0.0;                  ///< [N] largest unbalanced generalised force, by its lever arm
+  Eigen::VectorXd given;   ///< [m] what rows that come apart by a little give way: part of c (sim/redundancy), or empty
+  double largest = 0.0;    ///< [N] largest unbalanced generalised force, by its lever arm
   double scale = 0.0;      ///< [N] what residuals are measured against: the largest of elastic, sliding and motor
                            ///< forces, and of the sums of inertia and weight of a rod
   double violation = 0.0;  ///< [m] largest violation of a row
+
+  /// c without what rows give way.
+  Eigen::VectorXd as_told() const { return given.size() == 0 ? problem.c : Eigen::VectorXd(problem.c - given); }
 };
 
 /// Linearises rods, cables, rigid bodies, sliding points, ties, motors, loads and forces of contacts at an iterate.

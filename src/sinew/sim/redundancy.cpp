@@ -7,146 +7,22 @@
 #include <numeric>
 #include <set>
 
-#include "sinew/sim/rod_rows.hpp"
+#include "sinew/sim/row_jacobian.hpp"
 
 namespace sinew {
 
 namespace {
+
+using Entry = RowJacobian::Entry;
+using Row = RowJacobian::Row;
 
 constexpr double kZero = 1e-8;  ///< singular values of scaled rows that count as zero
 constexpr double kSuspect =
     1e-11;  ///< pivots of their Gram matrix that are looked at more closely (singular values squared)
 constexpr double kPrivate = 1e-2;         ///< entries that make a row independent where no other row has its column
 constexpr Eigen::Index kMostRows = 3000;  ///< beyond this a dense rank would take minutes: none is looked for
-
-struct Entry {
-  int column = 0;
-  double value = 0.0;
-};
-using Row = std::vector<Entry>;
-
-/// Row of each auxiliary unknown z (what attachments follow) that holds it, by its number among them: c = is - z.
-std::vector<int> rows_of_followed(const Model& model) {
-  std::vector<int> rows(static_cast<std::size_t>(model.followed), -1);
-  for (const TieModel& tie : model.ties) {
-    if (!tie.body()) continue;
-    for (int i = 0; i < (tie.directors ? 12 : 3); ++i)
-      rows[static_cast<std::size_t>(tie.unknown - model.first_followed + i)] = tie.body_row + i;
-  }
-  return rows;
-}
-
-/// Jacobians of some rows by all free coordinates, columns scaled by lever arms so that entries are near one. Rows that
-/// hold auxiliary unknowns, one each, are substituted in those that use them.
-class RowJacobian {
- public:
-  RowJacobian(const Model& model, const State& iterate, const solve::CoupledProblem& problem, std::vector<int> rows)
-      : model_(model), holds_(rows_of_followed(model)), rows_(std::move(rows)) {
-    std::vector<int> wanted = rows_;
-    wanted.insert(wanted.end(), holds_.begin(), holds_.end());
-    slot_.assign(static_cast<std::size_t>(model.rows), -1);
-    for (const int row : wanted) {
-      if (slot_[row] >= 0) continue;
-      slot_[row] = static_cast<int>(all_.size());
-      all_.emplace_back();
-    }
-    gather(iterate, problem);
-    substitute();
-  }
-
-  const std::vector<int>& rows() const { return rows_; }
-  const Row& of(std::size_t i) const { return all_[slot_[rows_[i]]]; }
-  /// What a row takes of each row that holds an auxiliary unknown.
-  const std::vector<Entry>& substituted(std::size_t i) const { return used_[i]; }
-
- private:
-  void add(int row, int column, double value) {
-    if (slot_[row] >= 0 && value != 0.0) all_[slot_[row]].push_back({column, value});
-  }
-
-  void gather(const State& iterate, const solve::CoupledProblem& problem) {
-    const auto nz = static_cast<int>(problem.r.size());
-    for (const auto& [row, column, value] : problem.G) add(row, column, value / model_.arms[column]);
-    int first = nz;
-    for (std::size_t n = 0; n < problem.chains.size(); ++n) {
-      const solve::ChainPart& part = problem.chains[n];
-      const Eigen::VectorXd levers = strain_levers(model_.rods[n].rod);
-      const auto spread = [&](int row, const Eigen::VectorXd& along) {
-        for (Eigen::Index c = 0; c < along.size(); ++c) add(row, first + static_cast<int>(c), along[c] / levers[c]);
-      };
-      for (std::size_t i = 0; i < part.at.size(); ++i) {
-        const int row = part.at[i] - nz;
-        if (row < 0 || slot_[row] < 0) continue;
-        spread(row, linalg::dense(part.chain, part.attachments[i]));
-        for (Eigen::Index b = 0; b < part.base.cols(); ++b) {
-          const int z = part.first_base + static_cast<int>(b);
-          add(row, z, part.base.col(b).dot(part.attachments[i].g) / model_.arms[z]);
-        }
-      }
-      for (std::size_t f = 0; f < part.whole_at.size(); ++f)
-        spread(part.whole_at[f] - nz, part.whole.col(static_cast<Eigen::Index>(f)));
-      first += part.chain.coordinates();
-    }
-    std::vector<int> first_of(model_.solids.size());
-    for (std::size_t i = 0; i < model_.solids.size(); ++i) {
-      first_of[i] = first;
-      first += model_.solids[i].body.unknowns;
-    }
-    for (const SolidRow& row : model_.solid_rows) {
-      if (slot_[row.row] < 0 || (row.point >= 0 && !iterate.points[row.point].on)) continue;
-      const solid::Body& body = model_.solids[row.solid].body;
-      const auto nodes = body.cells[row.where.element].nodes();
-      for (std::size_t k = 0; k < nodes.size(); ++k) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const int unknown = body.unknown(axis, nodes[k]);
-          if (unknown >= 0)
-            add(row.row + axis, first_of[row.solid] + unknown, -row.where.weights[static_cast<Eigen::Index>(k)]);
-        }
-      }
-    }
-    for (Row& row : all_) sum_up(row);
-  }
-
-  static void sum_up(Row& row) {
-    std::stable_sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (kept > 0 && row[kept - 1].column == row[i].column) {
-        row[kept - 1].value += row[i].value;
-      } else {
-        row[kept++] = row[i];
-      }
-    }
-    row.resize(kept);
-  }
-
-  void substitute() {
-    used_.resize(rows_.size());
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      Row& own = all_[slot_[rows_[i]]];
-      Row rest;
-      for (const Entry& entry : own) {
-        const int followed = entry.column - model_.first_followed;
-        if (followed < 0 || followed >= model_.followed) {
-          rest.push_back(entry);
-          continue;
-        }
-        const int holding = holds_[static_cast<std::size_t>(followed)];
-        used_[i].push_back({holding, entry.value});
-        for (const Entry& other : all_[slot_[holding]]) {
-          if (other.column != entry.column) rest.push_back({other.column, -entry.value * other.value});
-        }
-      }
-      sum_up(rest);
-      own = std::move(rest);
-    }
-  }
-
-  const Model& model_;
-  std::vector<int> holds_, rows_, slot_;
-  std::vector<Row> all_;
-  std::vector<std::vector<Entry>> used_;
-};
+constexpr double kNear = 0.1;             ///< sigma_1: singular values of combinations that give way
+constexpr Eigen::Index kMostNear = 200;   ///< rows of a group beyond which no singular values are looked for
 
 double norm_of(const Row& row) {
   double sum = 0.0;
@@ -214,12 +90,11 @@ Eigen::MatrixXd dense_transposed(const RowJacobian& J, const std::vector<std::si
 }
 
 /// Combinations n of scaled rows with J^T n = 0, a column each.
-Eigen::MatrixXd null_space(const Eigen::MatrixXd& transposed) {
-  const Eigen::Index count = transposed.cols();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(transposed);
+Eigen::MatrixXd null_space(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+  const Eigen::Index count = qr.cols();
   const auto& R = qr.matrixR();
   Eigen::Index rank = 0;
-  while (rank < std::min(transposed.rows(), count) && std::abs(R(rank, rank)) > kZero) ++rank;
+  while (rank < std::min(qr.rows(), count) && std::abs(R(rank, rank)) > kZero) ++rank;
   Eigen::MatrixXd null(count, count - rank);
   if (rank == count) return null;
   null.topRows(rank) = -R.topLeftCorner(rank, rank)
@@ -227,6 +102,37 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& transposed) {
                             .solve(Eigen::MatrixXd(R.block(0, rank, rank, count - rank)));
   null.bottomRows(count - rank).setIdentity();
   return qr.colsPermutation() * null;
+}
+
+/// Combinations n of scaled rows with J^T n small, where most of n is in `start`: a column and a singular value each,
+/// as many as `start` has beside those that are `zero`.
+struct Near {
+  Eigen::MatrixXd vectors;
+  std::vector<double> sigma;
+};
+Near nearly_null(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& start,
+                 Eigen::Index zero) {
+  Near near;
+  const Eigen::Index count = qr.cols(), wanted = start.cols() - zero;
+  if (wanted <= 0 || count > kMostNear) return near;
+  const Eigen::Index rows = std::min(qr.rows(), count);
+  const Eigen::MatrixXd R = qr.matrixR().topRows(rows).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(R, Eigen::ComputeFullV);
+  const Eigen::MatrixXd V = qr.colsPermutation() * svd.matrixV();
+  std::vector<std::pair<double, Eigen::Index>> found;  // part that is not in `start`, and place
+  for (Eigen::Index k = 0; k < std::min(rows, count - zero); ++k) {
+    const double sigma = svd.singularValues()[k];
+    const double other = 1.0 - (start.transpose() * V.col(k)).squaredNorm();
+    if (sigma < kNear && other < 0.5) found.emplace_back(other, k);
+  }
+  std::sort(found.begin(), found.end());
+  if (std::ssize(found) > wanted) found.resize(static_cast<std::size_t>(wanted));
+  near.vectors.resize(count, std::ssize(found));
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    near.vectors.col(static_cast<Eigen::Index>(i)) = V.col(found[i].second);
+    near.sigma.push_back(svd.singularValues()[found[i].second]);
+  }
+  return near;
 }
 
 /// Rows that hold auxiliary unknowns are in no group by themselves: one each, they are independent.
@@ -246,12 +152,8 @@ std::vector<int> told_rows(const Model& model, const State& iterate) {
 
 /// 1 of rows in metres, whose multipliers are newtons; those of angles are newton metres.
 double weight_of(const Model& model, int row) {
-  for (const ActuatorModel& actuator : model.actuators) {
-    if (actuator.row != row || !actuator.turns()) continue;
-    const double length = model.rods[actuator.line.rod].rod.length();
-    return 1.0 / (length * length);
-  }
-  return 1.0;
+  const double arm = arm_of(model, row);
+  return 1.0 / (arm * arm);
 }
 
 /// Which rows each group of combinations ties to each other.
@@ -277,6 +179,13 @@ bool may_depend(Eigen::MatrixXd gram) {
 
 }  // namespace
 
+double arm_of(const Model& model, int row) {
+  for (const ActuatorModel& actuator : model.actuators) {
+    if (actuator.row == row && actuator.turns()) return model.rods[actuator.line.rod].rod.length();
+  }
+  return 1.0;
+}
+
 double RedundantRows::contradiction(const Eigen::VectorXd& c) const {
   double worst = 0.0;
   for (Eigen::Index k = 0; k < null.cols(); ++k) {
@@ -286,7 +195,8 @@ double RedundantRows::contradiction(const Eigen::VectorXd& c) const {
       sum += n * c[rows[i]];
       size += weight[static_cast<Eigen::Index>(i)] * n * n;
     }
-    if (size > 0.0) worst = std::max(worst, std::abs(sum) / std::sqrt(size));
+    const double slack_of = k < exact ? 0.0 : slack[k - exact];
+    if (size > 0.0) worst = std::max(worst, std::abs(sum) / std::sqrt(size) - slack_of);
   }
   return worst;
 }
@@ -303,10 +213,12 @@ std::vector<int> RedundantRows::contradicting(const Eigen::VectorXd& c) const {
 }
 
 void RedundantRows::make_smallest(const Eigen::VectorXd& lambda, Eigen::VectorXd& dlambda) const {
-  const Eigen::MatrixXd weighted = weight.asDiagonal() * null;
+  if (exact == 0) return;
+  const auto N = null.leftCols(exact);
+  const Eigen::MatrixXd weighted = weight.asDiagonal() * N;
   const Eigen::VectorXd own = lambda(rows) + dlambda(rows);
-  const Eigen::VectorXd along = (null.transpose() * weighted).ldlt().solve(weighted.transpose() * own);
-  dlambda(rows) -= null * along;
+  const Eigen::VectorXd along = (N.transpose() * weighted).ldlt().solve(weighted.transpose() * own);
+  dlambda(rows) -= N * along;
 }
 
 std::vector<std::vector<int>> find_redundant_rows(const Model& model, const State& iterate,
@@ -318,7 +230,7 @@ std::vector<std::vector<int>> find_redundant_rows(const Model& model, const Stat
   Eigen::VectorXd norms;
   const Eigen::MatrixXd dense = dense_transposed(J, left, norms);
   if (norms.minCoeff() > kZero && !may_depend(dense.transpose() * dense)) return groups;
-  const Eigen::MatrixXd null = null_space(dense);
+  const Eigen::MatrixXd null = null_space(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(dense));
   Groups joined(left.size());
   std::vector<bool> in_one(left.size(), false);
   for (Eigen::Index k = 0; k < null.cols(); ++k) {
@@ -338,53 +250,6 @@ std::vector<std::vector<int>> find_redundant_rows(const Model& model, const Stat
   for (auto& [root, rows] : found) groups.push_back(std::move(rows));
   std::sort(groups.begin(), groups.end());
   return groups;
-}
-
-RedundantRows redundant_rows(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
-                             const std::vector<int>& rows) {
-  RedundantRows own;
-  const RowJacobian J(model, iterate, problem, rows);
-  std::vector<std::size_t> all(rows.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd norms;
-  Eigen::MatrixXd null = null_space(dense_transposed(J, all, norms));
-  if (null.cols() == 0) return own;
-  for (Eigen::Index i = 0; i < norms.size(); ++i) {
-    if (norms[i] > kZero) null.row(i) /= norms[i];
-  }
-  // What the rows take of those that hold auxiliary unknowns goes with them.
-  std::map<int, Eigen::RowVectorXd> of_row;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    of_row[rows[i]] = null.row(static_cast<Eigen::Index>(i));
-    for (const Entry& entry : J.substituted(i)) {
-      auto [place, fresh] = of_row.try_emplace(entry.column, Eigen::RowVectorXd::Zero(null.cols()));
-      place->second -= entry.value * null.row(static_cast<Eigen::Index>(i));
-    }
-  }
-  own.null.resize(static_cast<Eigen::Index>(of_row.size()), null.cols());
-  own.weight.setZero(own.null.rows());
-  for (const auto& [row, values] : of_row) {
-    const auto i = static_cast<Eigen::Index>(own.rows.size());
-    own.null.row(i) = values;
-    if (std::binary_search(rows.begin(), rows.end(), row)) own.weight[i] = weight_of(model, row);
-    own.rows.push_back(row);
-  }
-  for (Eigen::Index k = 0; k < null.cols(); ++k)
-    own.null.col(k) /= std::sqrt(own.weight.dot(own.null.col(k).cwiseAbs2()));
-  return own;
-}
-
-void add_compliance(const RedundantRows& redundant, double alpha, solve::CoupledProblem& problem) {
-  const Eigen::MatrixXd weighted = redundant.weight.asDiagonal() * redundant.null;
-  const Eigen::MatrixXd W = alpha * weighted * weighted.transpose();
-  for (Eigen::Index i = 0; i < W.rows(); ++i) {
-    if (redundant.weight[i] == 0.0) continue;
-    for (Eigen::Index j = 0; j < W.cols(); ++j) {
-      if (redundant.weight[j] != 0.0)
-        problem.W.add(redundant.rows[static_cast<std::size_t>(i)], redundant.rows[static_cast<std::size_t>(j)],
-                      W(i, j));
-    }
-  }
 }
 
 namespace {
@@ -444,6 +309,147 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+RedundantRows redundant_rows(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
+                             const std::vector<int>& rows) {
+  return redundant_rows(model, iterate, problem, RedundantGroup{rows, {}, 0.0, {}});
+}
+
+RedundantRows redundant_rows(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
+                             const RedundantGroup& group) {
+  RedundantRows own;
+  const std::vector<int>& rows = group.rows;
+  const RowJacobian J(model, iterate, problem, rows);
+  std::vector<std::size_t> all(rows.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd norms;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(dense_transposed(J, all, norms));
+  Eigen::MatrixXd null = null_space(qr);
+  own.exact = null.cols();
+  const Near near = nearly_null(qr, group.null, own.exact);
+  null.conservativeResize(qr.cols(), own.exact + near.vectors.cols());
+  null.rightCols(near.vectors.cols()) = near.vectors;
+  if (null.cols() == 0) return own;
+  for (Eigen::Index i = 0; i < norms.size(); ++i) {
+    if (norms[i] > kZero) null.row(i) /= norms[i];
+  }
+  // What the rows take of those that hold auxiliary unknowns goes with them.
+  std::map<int, Eigen::RowVectorXd> of_row;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    of_row[rows[i]] = null.row(static_cast<Eigen::Index>(i));
+    for (const Entry& entry : J.substituted(i)) {
+      auto [place, fresh] = of_row.try_emplace(entry.column, Eigen::RowVectorXd::Zero(null.cols()));
+      place->second -= entry.value * null.row(static_cast<Eigen::Index>(i));
+    }
+  }
+  own.null.resize(static_cast<Eigen::Index>(of_row.size()), null.cols());
+  own.weight.setZero(own.null.rows());
+  for (const auto& [row, values] : of_row) {
+    const auto i = static_cast<Eigen::Index>(own.rows.size());
+    own.null.row(i) = values;
+    if (std::binary_search(rows.begin(), rows.end(), row)) own.weight[i] = weight_of(model, row);
+    own.rows.push_back(row);
+  }
+  if (own.exact > 0 && own.exact < null.cols()) {  // give has no part in what nothing answers
+    const auto N = own.null.leftCols(own.exact);
+    auto rest = own.null.rightCols(null.cols() - own.exact);
+    const Eigen::MatrixXd weighted = own.weight.asDiagonal() * N;
+    rest -= (N * (N.transpose() * weighted).ldlt().solve(weighted.transpose() * rest)).eval();
+  }
+  own.give.resize(null.cols() - own.exact);
+  own.slack.resize(own.give.size());
+  const Eigen::MatrixXd scaled = null.rightCols(own.give.size());  // combinations of the rows as they are
+  for (Eigen::Index k = 0; k < null.cols(); ++k) {
+    const double norm = std::sqrt(own.weight.dot(own.null.col(k).cwiseAbs2()));
+    own.null.col(k) /= norm;
+    if (k < own.exact) continue;
+    const double sigma = near.sigma[static_cast<std::size_t>(k - own.exact)], part = sigma / kNear;
+    own.give[k - own.exact] = group.give * (1.0 - part * part) * (1.0 - part * part);
+    std::map<int, double> answer;  // J^T n
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (const Entry& entry : J.of(i))
+        answer[entry.column] += entry.value * scaled(static_cast<Eigen::Index>(i), k - own.exact) / norm;
+    }
+    double& slack = own.slack[k - own.exact] = 0.0;
+    for (const auto& [column, value] : answer) slack += std::abs(value) * J.moved(column);
+  }
+  return own;
+}
+
+bool is_chosen(const Model& model, const std::vector<int>& rows) {
+  return std::any_of(model.actuators.begin(), model.actuators.end(), [&](const ActuatorModel& own) {
+    return own.sought() && own.row >= 0 && std::binary_search(rows.begin(), rows.end(), own.row);
+  });
+}
+
+bool is_carried(const Model& model, const std::vector<int>& rows) {
+  const auto moves = [&model](int frame) {
+    return frame >= 0 && model.scene.frames[static_cast<std::size_t>(frame)].second.motion.has_value();
+  };
+  return std::any_of(model.ties.begin(), model.ties.end(), [&](const TieModel& tie) {
+    const int last = tie.row + static_cast<int>(tie.along.size() + tie.about.size());
+    const bool in = std::any_of(rows.begin(), rows.end(), [&](int row) { return row >= tie.row && row < last; });
+    return in && (moves(tie.frame) || moves(model.rods[tie.rod].frame) ||
+                  (tie.other >= 0 && moves(model.rods[tie.other].frame)));
+  });
+}
+
+bool contradicts(const Model& model, const RedundantGroup& group, const std::vector<double>& commands) {
+  if (group.told.size() == 0) return false;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(group.told.cols());
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const auto place = std::lower_bound(group.rows.begin(), group.rows.end(), model.actuators[i].row);
+    if (model.actuators[i].row >= 0 && place != group.rows.end() && *place == model.actuators[i].row)
+      sum += commands[i] * group.told.row(place - group.rows.begin()).transpose();
+  }
+  return sum.cwiseAbs().maxCoeff() > kContradiction * model.size;
+}
+
+RedundantGroup redundant_group(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
+                               const std::vector<int>& rows) {
+  RedundantGroup group{rows, {}, model.size / model.bearing, {}};
+  const RowJacobian J(model, iterate, problem, rows);
+  std::vector<std::size_t> all(rows.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd norms;
+  Eigen::MatrixXd null = null_space(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(dense_transposed(J, all, norms)));
+  // (What a frame asks for as it moves cannot be told from what a posture does: nothing gives way.)
+  if (null.cols() > 0 && !is_carried(model, rows)) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(null);
+    group.null = qr.householderQ() * Eigen::MatrixXd::Identity(null.rows(), null.cols());
+  }
+  for (Eigen::Index i = 0; i < norms.size(); ++i) {
+    if (norms[i] > kZero) null.row(i) /= norms[i];
+  }
+  if (!is_chosen(model, rows)) group.told = null.colwise().normalized();
+  double longest = 0.0;
+  for (const int number : rods_of(model, rows)) {
+    const rod::Rod& rod = model.rods[number].rod;
+    longest = std::max(longest, rod.length() / rod::stiffness_at(rod.profile, 0.5 * rod.length())(3, 3));
+  }
+  if (longest > 0.0) group.give = longest;
+  return group;
+}
+
+void add_compliance(const RedundantRows& redundant, double alpha, const Eigen::VectorXd& lambda,
+                    solve::CoupledProblem& problem, Eigen::VectorXd& given) {
+  const Eigen::MatrixXd weighted = redundant.weight.asDiagonal() * redundant.null;
+  const Eigen::Index near = weighted.cols() - redundant.exact;
+  const auto some = weighted.rightCols(near);
+  Eigen::MatrixXd W = alpha * weighted.leftCols(redundant.exact) * weighted.leftCols(redundant.exact).transpose();
+  if (near > 0) {
+    W += some * redundant.give.asDiagonal() * some.transpose();
+    given(redundant.rows) += some * redundant.give.cwiseProduct(some.transpose() * lambda(redundant.rows));
+  }
+  for (Eigen::Index i = 0; i < W.rows(); ++i) {
+    if (redundant.weight[i] == 0.0) continue;
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      if (redundant.weight[j] != 0.0)
+        problem.W.add(redundant.rows[static_cast<std::size_t>(i)], redundant.rows[static_cast<std::size_t>(j)],
+                      W(i, j));
+    }
+  }
+}
 
 std::vector<std::vector<int>> join_by_rods(const Model& model, const std::vector<std::vector<int>>& groups) {
   Groups joined(groups.size());

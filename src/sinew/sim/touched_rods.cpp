@@ -22,12 +22,17 @@ struct GaussPoint {
 constexpr std::array<GaussPoint, 3> kGauss = {
     {{0.1127016653792583, 5.0 / 18.0}, {0.5, 8.0 / 18.0}, {0.8872983346207417, 5.0 / 18.0}}};
 
-/// The integral between two neighbouring places at which the stresses are known, and between which they are linear.
-double error_between(const rod::Rod& rod, const RodState& state, const rod::Section& section, Eigen::Index column) {
+/// Integrals between two neighbouring places at which the stresses are known, and between which they are linear, of
+/// what strains miss.
+struct Missed {
+  rod::Vec6 sum = rod::Vec6::Zero();  ///< [of strains, m] by each strain along the rod
+  double work = 0.0;                  ///< [N] along the stresses
+};
+Missed missed_between(const rod::Rod& rod, const RodState& state, const rod::Section& section, Eigen::Index column) {
   const Eigen::MatrixXd& internal = state.internal;
   const double begin = internal(0, column), end = internal(0, column + 1);
   const auto from = internal.block<6, 1>(7, column), to = internal.block<6, 1>(1, column + 1);
-  double error = 0.0;
+  Missed missed;
   for (const GaussPoint& point : kGauss) {
     const double s = begin + point.t * (end - begin);
     const rod::Vec6 stress = from + point.t * (to - from), strain = rod::deviation(rod, state.q, s);
@@ -35,10 +40,21 @@ double error_between(const rod::Rod& rod, const RodState& state, const rod::Sect
     for (const rod::Mode& mode : section.modes) {
       if (mode.degree > 0) continue;  // each strain once
       const int i = mode.strain;
-      error += point.weight * (stress[i] / stiffness(i, i) - strain[i]) * (to[i] - from[i]);
+      const double own = point.weight * (stress[i] / stiffness(i, i) - strain[i]);
+      missed.sum[i] += own * (end - begin);
+      missed.work += own * (to[i] - from[i]);
     }
   }
-  return error;
+  return missed;
+}
+
+/// Visits the columns of `internal` that begin and end in a section, from `column` on, which goes on to the next.
+template <class Visit>
+void each_within(const Eigen::MatrixXd& internal, const rod::Section& section, Eigen::Index& column,
+                 const Visit& visit) {
+  for (; column + 1 < internal.cols() && internal(0, column + 1) <= section.end; ++column) {
+    if (internal(0, column) >= section.begin && internal(0, column + 1) > internal(0, column)) visit(column);
+  }
 }
 
 /// Whether a contact presses on the rod in a section, or next to it: contacts follow a rod beyond their pieces.
@@ -62,12 +78,20 @@ double configurational_error(const Model& model, const State& state, int number)
   double error = 0.0, largest = 0.0;
   Eigen::Index column = 0;
   for (const rod::Section& section : rod.sections) {
-    const bool pressed = is_pressed_in(state, number, section);
-    for (; column + 1 < internal.cols() && internal(0, column + 1) <= section.end; ++column) {
-      const double begin = internal(0, column), end = internal(0, column + 1);
-      if (pressed && begin >= section.begin && end > begin)
-        error += error_between(rod, state.rods[number], section, column);
+    const Eigen::Index first = column;
+    Missed all;
+    rod::Vec6 jumps = rod::Vec6::Zero();
+    if (!is_pressed_in(state, number, section)) {
+      each_within(internal, section, column, [](Eigen::Index) {});
+      continue;
     }
+    each_within(internal, section, column, [&](Eigen::Index k) {
+      const Missed own = missed_between(rod, state.rods[number], section, k);
+      all.sum += own.sum;
+      all.work += own.work;
+      jumps += internal.block<6, 1>(1, k + 1) - internal.block<6, 1>(7, k);
+    });
+    if (column > first) error += all.work - all.sum.dot(jumps) / section.length();
     largest = std::max(largest, std::abs(error));
   }
   return largest;

@@ -10,7 +10,8 @@
 //
 //     integral of sum_i (w_i / K_i - e_i) dw_i
 //
-// between two places. That is 0 over a section of order 0 and constant stiffness on which the stresses are linear. It
+// between two places; viscous stresses, which move the mean over a section, are left out of w_i / K_i - e_i by taking
+// out its mean. That is 0 over a section of order 0 and constant stiffness on which the stresses are linear. It
 // is not where a contact stands within the section and the stresses have a kink there: at the mouth of a sleeve, where
 // the exact force along a straight rod jumps by M^2 / (2 B) (D. Bigoni et al., Mechanics of Materials 80 (2015)
 // 368-374).
@@ -25,7 +26,7 @@
 namespace sinew {
 
 /// [N] By how much the force along a rod is off, at most, between its base and any other place: over the sections in
-/// which contacts press on it. (Viscous stresses count as off.)
+/// which contacts press on it.
 double configurational_error(const Model& model, const State& state, int rod);
 
 /// Warnings `touched_force_off` of rods that almost rest. Time and number of steps are left to the caller.

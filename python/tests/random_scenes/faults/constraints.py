@@ -11,7 +11,7 @@ from .base import FULL, codes, end_of, fault
 
 
 def tendons(random_: random.Random) -> tuple[Scene, Judge]:
-    """Opposite tendons told opposite lengths, or such that they contradict each other."""
+    """Opposite tendons told opposite lengths, or such that they contradict each other; a weight may twist the arm."""
     length, radius = random_.uniform(0.1, 0.4), random_.uniform(4e-3, 12e-3)
     distance = radius * random_.uniform(0.3, 0.9)
     pairs = random_.randint(1, 3)
@@ -34,6 +34,11 @@ def tendons(random_: random.Random) -> tuple[Scene, Judge]:
             scene["actuators"][f"t{i}{side}"] = {
                 "rod": "arm", "tendon": {"distance": distance, "angle": f"{60 * i + 180 * side} deg"},
                 "displacement": {"times": [0, 0.2], "values": [0, told]}}
+    loaded = random_.random() < 0.5
+    if loaded:
+        weight = young * circle(radius) / length**2
+        scene["loads"] = {"weight": {"rod": "arm", "force": [random_.uniform(-1, 1) * weight for _ in range(3)],
+                                     "factor": {"times": [0, 0.2], "values": [0, 1]}}}
 
     def judge(rows: list[Row], report: Any) -> list[str]:
         end = end_of(report)
@@ -50,7 +55,7 @@ def tendons(random_: random.Random) -> tuple[Scene, Judge]:
         largest = max(abs(last[f"t{i}{side}.force"]) for i in range(pairs) for side in (0, 1))
         limit = 20 * young * circle(radius) / (length * distance)
         told = [f"{largest:.3g} N, more than {limit:.3g} N"] if largest > limit else []
-        for i in range(0 if gives else pairs):  # the least that do the same are opposite
+        for i in range(0 if gives or loaded else pairs):  # the least that do the same are opposite
             both = last[f"t{i}0.force"] + last[f"t{i}1.force"]
             if abs(both) > 1e-6 * max(largest, 1e-9):
                 told.append(f"forces of pair {i} add up to {both:.3g} N of {largest:.3g} N")
