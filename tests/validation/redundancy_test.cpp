@@ -162,6 +162,34 @@ TEST(Redundancy, a_sought_length_agrees_with_one_that_is_told) {
   EXPECT_EQ(find_warning(solved.model.warnings, "contradicting_commands"), nullptr);
 }
 
+// A sought tendon at a right angle to a pair that is told has no part in what these agree on, but by rounding.
+TEST(Redundancy, a_sought_length_beside_a_pair_that_is_told_is_left_alone) {
+  Scene scene = tendon_robot(2, false, Analysis::quasi_static);
+  scene.time = {0.05, 1.0};
+  std::get<Table>(scene.actuators[0].second.drive).values = {0.0, 0.004};
+  std::get<Table>(scene.actuators[1].second.drive).values = {0.0, -0.004};
+  Actuator sought;
+  sought.rod = "rod";
+  sought.tendon = Tendon{0.0, {}, 0.006, 0.5 * pi};
+  sought.drive = Sought{};
+  sought.limits.displacement = Span{-0.01, 0.01};
+  sought.limits.force = Span{-5.0, 20.0};
+  scene.actuators.emplace_back("t2", sought);
+  Output tip;
+  tip.rod = "rod";
+  tip.at = 0.2;
+  scene.outputs.emplace_back("tip", tip);
+  Target target;
+  target.output = "tip";
+  target.at = Track{{0.0, 1.0}, {Vec3(0.2, 0.0, 0.0), Vec3(0.18, 0.04, 0.06)}};
+  scene.targets.push_back(target);
+  const Solved solved = solve(scene);
+  ASSERT_TRUE(solved.done());
+  EXPECT_LT(std::abs(motor_positions(solved.model, solved.end())[2]), 0.0101);
+  EXPECT_LT(std::abs(solved.end().actuators[2]), 5.1);
+  EXPECT_LT(std::abs(solved.end().actuators[0] + solved.end().actuators[1]), 0.1);
+}
+
 TEST(Redundancy, one_linearisation_a_step_takes_the_smallest_forces_too) {
   Scene scene = tendon_robot(4, false, Analysis::dynamic);
   scene.newton.iterations = 1;

@@ -180,7 +180,8 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
     // Those of the start are told by the model, whatever posture adds to them.
     std::vector<int> dependent;
     for (std::size_t i = 0; i < own.rows.size(); ++i) {
-      if (own.null.row(static_cast<Eigen::Index>(i)).norm() > 1e-6) dependent.push_back(own.rows[i]);
+      const auto at = static_cast<Eigen::Index>(i);
+      if (own.weight[at] > 0.0 && own.null.leftCols(own.exact).row(at).norm() > 1e-6) dependent.push_back(own.rows[i]);
     }
     const bool known = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const RedundantGroup& group) {
       return std::includes(group.rows.begin(), group.rows.end(), dependent.begin(), dependent.end());
@@ -191,7 +192,7 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
                   .message = "constraint rows have come to depend on each other in this posture; of the forces that do "
                              "the same, the smallest are taken",
                   .remedy = remedy_of_rows(model, own.rows),
-                  .value = static_cast<double>(own.null.cols())});
+                  .value = static_cast<double>(own.exact)});
   }
 }
 

@@ -44,7 +44,8 @@ void warn_of_contradictions(Model& model, const RedundantRows& redundant) {
   model.warnings.push_back({.code = "contradicting_commands",
                             .where = name_of_rows(model, redundant.rows),
                             .message = "what they are told contradicts each other by " + text(1e3 * worst) +
-                                       " mm at t = " + text(when) + " s: no shape of the robot does both",
+                                       " mm at t = " + text(when) +
+                                       " s: no shape of the robot does both, or only one far from that at the start",
                             .remedy = remedy_of_rows(model, redundant.rows),
                             .value = worst,
                             .limit = kContradiction * model.size,

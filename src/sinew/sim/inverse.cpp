@@ -280,7 +280,7 @@ void Inverse::add_agreement(const Model& model, const Reduced& reduced) {
   const auto [A, b] = agreement(model, reduced);
   for (Eigen::Index k = 0; k < b.size(); ++k) {
     const double size = A.row(k).norm();
-    if (!(size > 0.0)) continue;
+    if (size == 0.0) continue;
     const Eigen::Index row = problem_.A.rows();
     problem_.A.conservativeResize(row + 1, A.cols());
     problem_.C.conservativeResize(row + 1, problem_.C.cols());

@@ -14,6 +14,15 @@ namespace sinew {
 
 namespace {
 
+/// [m] by how much rows that agree in this posture may have been told to contradict each other at the start, as a
+/// replay tells them. Rods in solids bend in many ways at once: of these it is not known.
+double slack_of_posture(const Model& model, const RedundantRows& redundant) {
+  const bool in_solid = std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& point) {
+    return std::binary_search(redundant.rows.begin(), redundant.rows.end(), point.row);
+  });
+  return in_solid ? 0.0 : redundant.slack_of_strains.maxCoeff();
+}
+
 /// The compliance of rows that depend on each other, of the model's groups and others.
 void add_redundant(const StepContext& context, const State& iterate, const std::vector<std::vector<int>>& more,
                    Reduced& reduced) {
@@ -24,9 +33,12 @@ void add_redundant(const StepContext& context, const State& iterate, const std::
     if (own.null.cols() > 0) reduced.redundant.push_back(std::move(own));
   };
   for (const RedundantGroup& group : model.redundant) {
-    add(contradicts(model, group, context.command.actuators)
-            ? redundant_rows(model, iterate, reduced.problem, group.rows)
-            : redundant_rows(model, iterate, reduced.problem, group));
+    RedundantRows own = redundant_rows(model, iterate, reduced.problem, group);
+    // What is told to contradict is no matter of posture, and nothing gives way.
+    if (own.give.size() > 0 && contradiction_of(model, group, context.command.actuators) >
+                                   kContradiction * model.size + slack_of_posture(model, own))
+      own = redundant_rows(model, iterate, reduced.problem, group.rows);
+    add(std::move(own));
   }
   for (const std::vector<int>& rows : more) add(redundant_rows(model, iterate, reduced.problem, rows));
   if (reduced.redundant.empty()) return;

@@ -104,24 +104,36 @@ Eigen::MatrixXd null_space(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr
   return qr.colsPermutation() * null;
 }
 
+/// Columns at right angles that span the same.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+}
+
 /// Combinations n of scaled rows with J^T n small, where most of n is in `start`: a column and a singular value each,
-/// as many as `start` has beside those that are `zero`.
+/// as many as `start` has beside those of `null`, and at right angles to these.
 struct Near {
   Eigen::MatrixXd vectors;
   std::vector<double> sigma;
 };
 Near nearly_null(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& start,
-                 Eigen::Index zero) {
+                 const Eigen::MatrixXd& null) {
   Near near;
-  const Eigen::Index count = qr.cols(), wanted = start.cols() - zero;
+  const Eigen::Index count = qr.cols(), wanted = start.cols() - null.cols();
   if (wanted <= 0 || count > kMostNear) return near;
   const Eigen::Index rows = std::min(qr.rows(), count);
   const Eigen::MatrixXd R = qr.matrixR().topRows(rows).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(R, Eigen::ComputeFullV);
-  const Eigen::MatrixXd V = qr.colsPermutation() * svd.matrixV();
+  Eigen::MatrixXd gram = qr.colsPermutation() * (R.transpose() * R) * qr.colsPermutation().transpose();
+  if (null.cols() > 0) {  // of length 1, far from small
+    const Eigen::MatrixXd own = orthonormal(null);
+    gram += own * own.transpose();
+  }
+  // (Squares of singular values below 1e-8 are rounding; all of these give way alike.)
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(gram);
+  const Eigen::MatrixXd& V = squares.eigenvectors();
   std::vector<std::pair<double, Eigen::Index>> found;  // part that is not in `start`, and place
-  for (Eigen::Index k = 0; k < std::min(rows, count - zero); ++k) {
-    const double sigma = svd.singularValues()[k];
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double sigma = std::sqrt(std::max(0.0, squares.eigenvalues()[k]));
     const double other = 1.0 - (start.transpose() * V.col(k)).squaredNorm();
     if (sigma < kNear && other < 0.5) found.emplace_back(other, k);
   }
@@ -130,7 +142,7 @@ Near nearly_null(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Ei
   near.vectors.resize(count, std::ssize(found));
   for (std::size_t i = 0; i < found.size(); ++i) {
     near.vectors.col(static_cast<Eigen::Index>(i)) = V.col(found[i].second);
-    near.sigma.push_back(svd.singularValues()[found[i].second]);
+    near.sigma.push_back(std::sqrt(std::max(0.0, squares.eigenvalues()[found[i].second])));
   }
   return near;
 }
@@ -326,7 +338,7 @@ RedundantRows redundant_rows(const Model& model, const State& iterate, const sol
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(dense_transposed(J, all, norms));
   Eigen::MatrixXd null = null_space(qr);
   own.exact = null.cols();
-  const Near near = nearly_null(qr, group.null, own.exact);
+  const Near near = nearly_null(qr, group.null, null);
   null.conservativeResize(qr.cols(), own.exact + near.vectors.cols());
   null.rightCols(near.vectors.cols()) = near.vectors;
   if (null.cols() == 0) return own;
@@ -357,7 +369,8 @@ RedundantRows redundant_rows(const Model& model, const State& iterate, const sol
     rest -= (N * (N.transpose() * weighted).ldlt().solve(weighted.transpose() * rest)).eval();
   }
   own.give.resize(null.cols() - own.exact);
-  own.slack.resize(own.give.size());
+  own.slack.setZero(own.give.size());
+  own.slack_of_strains.setZero(own.give.size());
   const Eigen::MatrixXd scaled = null.rightCols(own.give.size());  // combinations of the rows as they are
   for (Eigen::Index k = 0; k < null.cols(); ++k) {
     const double norm = std::sqrt(own.weight.dot(own.null.col(k).cwiseAbs2()));
@@ -370,8 +383,11 @@ RedundantRows redundant_rows(const Model& model, const State& iterate, const sol
       for (const Entry& entry : J.of(i))
         answer[entry.column] += entry.value * scaled(static_cast<Eigen::Index>(i), k - own.exact) / norm;
     }
-    double& slack = own.slack[k - own.exact] = 0.0;
-    for (const auto& [column, value] : answer) slack += std::abs(value) * J.moved(column);
+    for (const auto& [column, value] : answer) {
+      const double most = std::abs(value) * J.moved(column);
+      own.slack[k - own.exact] += most;
+      if (J.is_strain(column)) own.slack_of_strains[k - own.exact] += most;
+    }
   }
   return own;
 }
@@ -394,15 +410,15 @@ bool is_carried(const Model& model, const std::vector<int>& rows) {
   });
 }
 
-bool contradicts(const Model& model, const RedundantGroup& group, const std::vector<double>& commands) {
-  if (group.told.size() == 0) return false;
+double contradiction_of(const Model& model, const RedundantGroup& group, const std::vector<double>& commands) {
+  if (group.told.size() == 0) return 0.0;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(group.told.cols());
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const auto place = std::lower_bound(group.rows.begin(), group.rows.end(), model.actuators[i].row);
     if (model.actuators[i].row >= 0 && place != group.rows.end() && *place == model.actuators[i].row)
       sum += commands[i] * group.told.row(place - group.rows.begin()).transpose();
   }
-  return sum.cwiseAbs().maxCoeff() > kContradiction * model.size;
+  return sum.cwiseAbs().maxCoeff();
 }
 
 RedundantGroup redundant_group(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
@@ -414,10 +430,7 @@ RedundantGroup redundant_group(const Model& model, const State& iterate, const s
   Eigen::VectorXd norms;
   Eigen::MatrixXd null = null_space(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(dense_transposed(J, all, norms)));
   // (What a frame asks for as it moves cannot be told from what a posture does: nothing gives way.)
-  if (null.cols() > 0 && !is_carried(model, rows)) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(null);
-    group.null = qr.householderQ() * Eigen::MatrixXd::Identity(null.rows(), null.cols());
-  }
+  if (null.cols() > 0 && !is_carried(model, rows)) group.null = orthonormal(null);
   for (Eigen::Index i = 0; i < norms.size(); ++i) {
     if (norms[i] > kZero) null.row(i) /= norms[i];
   }

@@ -16,8 +16,8 @@
 // Rows that depend on each other at the start of a run may come apart by a little in other postures. Opposite tendons
 // at the distance d of an axis that cannot stretch grow longer together by d^2 tau^2 / 2 a unit of length where the rod
 // is twisted by tau: J^T N = O(tau), and forces of O(1 / tau) would keep all torsion out. A real axis gives way first:
-// it is a little shorter, by its forces over its stiffness E A. So such rows are met but for this give, which is what
-// rods of length L would be shorter by (`RedundantGroup::give`, L / E A),
+// it is a little shorter, by its forces over its stiffness E A. So such rows are met but for a give of that order, for
+// rods of length L (`RedundantGroup::give`, L / E A),
 //
 //     c + alpha S N N^T S lambda = 0,      alpha = (1 - (sigma / sigma_1)^2)^2 give,
 //
@@ -41,8 +41,9 @@ struct RedundantRows {
   Eigen::VectorXd weight;  ///< S: 1 of rows in metres, 1 / length^2 of angles, 0 of those that hold auxiliary unknowns
   Eigen::Index exact = 0;  ///< combinations that nothing answers; the others come after them
   Eigen::VectorXd give;    ///< [m/N] alpha of each of these
-  /// [m] by how much of N^T c these may come apart: what answers them, times what moves it, at most.
-  Eigen::VectorXd slack;
+  /// [m] by how much of N^T c these may come apart: what answers them, times what moves it, at most; and the part of it
+  /// that is due to strains.
+  Eigen::VectorXd slack, slack_of_strains;
 
   /// [m] N^T c, of combinations with S-norm 1: by how much the rows contradict each other, c as told, without give.
   double contradiction(const Eigen::VectorXd& c) const;
@@ -76,8 +77,8 @@ bool is_carried(const Model& model, const std::vector<int>& rows);
 /// Commands that contradict each other by more than this part of the scene's size are told so.
 inline constexpr double kContradiction = 1e-6;
 
-/// Whether commands of the model's actuators contradict what a group asks of them.
-bool contradicts(const Model& model, const RedundantGroup& group, const std::vector<double>& commands);
+/// [m] by how much commands of the model's actuators contradict what a group asks of them at the start.
+double contradiction_of(const Model& model, const RedundantGroup& group, const std::vector<double>& commands);
 
 /// Rows as a group, where nothing answers some combination of them.
 RedundantGroup redundant_group(const Model& model, const State& iterate, const solve::CoupledProblem& problem,

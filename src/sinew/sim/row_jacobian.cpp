@@ -54,6 +54,7 @@ RowJacobian::RowJacobian(const Model& model, const State& iterate, const solve::
 
 void RowJacobian::gather(const State& iterate, const solve::CoupledProblem& problem) {
   const auto nz = static_cast<int>(problem.r.size());
+  first_strain_ = nz;
   moved_.assign(static_cast<std::size_t>(nz), model_.size);
   for (const auto& [row, column, value] : problem.G) add(row, column, value / model_.arms[column]);
   int first = nz;

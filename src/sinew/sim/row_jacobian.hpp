@@ -24,6 +24,7 @@ class RowJacobian {
   const Row& of(std::size_t i) const { return all_[slot_[rows_[i]]]; }
   /// What a row takes of each row that holds an auxiliary unknown.
   const std::vector<Entry>& substituted(std::size_t i) const { return used_[i]; }
+  bool is_strain(int column) const { return column >= first_strain_ && column < std::ssize(moved_); }
   /// [m] how far a scaled coordinate has moved: of strains from rest, of all others at most the scene's size.
   double moved(int column) const { return column < std::ssize(moved_) ? moved_[column] : model_.size; }
 
@@ -36,7 +37,8 @@ class RowJacobian {
 
   const Model& model_;
   std::vector<int> holds_, rows_, slot_;
-  std::vector<double> moved_;
+  int first_strain_ = 0;
+  std::vector<double> moved_;  ///< of all but the nodes of solids
   std::vector<Row> all_;
   std::vector<std::vector<Entry>> used_;
 };

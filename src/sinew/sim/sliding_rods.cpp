@@ -115,7 +115,8 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
   for (int number = 0; number < static_cast<int>(model.rods.size()); ++number) {
     const rod::Rod& rod = model.rods[number].rod;
     // (No list is made: most steps have nothing to warn of, and ask for no memory.)
-    double pressed = 0.0, against = 0.0, friction = 0.0, closest = INFINITY;
+    double pressed = 0.0, against = 0.0, friction = 0.0, rubs_most = 0.0, closest = INFINITY;
+    int rubbing = -1;
     Swing most;
     Vec3 before = Vec3::Zero();
     int last = -1;
@@ -126,6 +127,10 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
       const Vec3 force = state.lambda.segment<3>(point.row);
       pressed += force.norm();
       friction += point.friction * force.norm();
+      if (point.friction * force.norm() > rubs_most) {
+        rubs_most = point.friction * force.norm();
+        rubbing = point.coupling;
+      }
       if (force.dot(before) < 0.0) against += std::min(before.norm(), force.norm());
       before = force;
       const int one = std::exchange(last, k);
@@ -165,7 +170,7 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
     }
     if (against > kHeldByPairs * pressed && friction > kRubs * base) {
       warnings.push_back({.code = "friction_of_points",
-                          .where = "couplings." + std::to_string(model.points[last].coupling),
+                          .where = "couplings." + std::to_string(rubbing),
                           .message = "neighbouring points hold the rod's bending stiffness by forces against each "
                                      "other, and the friction of these grows as 1 / spacing (" +
                                      three_digits(1e3 * closest) + " mm)",

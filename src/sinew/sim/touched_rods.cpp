@@ -80,7 +80,7 @@ double configurational_error(const Model& model, const State& state, int number)
   for (const rod::Section& section : rod.sections) {
     const Eigen::Index first = column;
     Missed all;
-    rod::Vec6 jumps = rod::Vec6::Zero();
+    rod::Vec6 change = rod::Vec6::Zero();
     if (!is_pressed_in(state, number, section)) {
       each_within(internal, section, column, [](Eigen::Index) {});
       continue;
@@ -89,9 +89,9 @@ double configurational_error(const Model& model, const State& state, int number)
       const Missed own = missed_between(rod, state.rods[number], section, k);
       all.sum += own.sum;
       all.work += own.work;
-      jumps += internal.block<6, 1>(1, k + 1) - internal.block<6, 1>(7, k);
+      change += internal.block<6, 1>(1, k + 1) - internal.block<6, 1>(7, k);
     });
-    if (column > first) error += all.work - all.sum.dot(jumps) / section.length();
+    if (column > first) error += all.work - all.sum.dot(change) / section.length();
     largest = std::max(largest, std::abs(error));
   }
   return largest;

@@ -10,7 +10,7 @@
 //
 //     integral of sum_i (w_i / K_i - e_i) dw_i
 //
-// between two places; viscous stresses, which move the mean over a section, are left out of w_i / K_i - e_i by taking
+// between two places. Viscous stresses (in sections of order 0 all of them) are left out of w_i / K_i - e_i by taking
 // out its mean. That is 0 over a section of order 0 and constant stiffness on which the stresses are linear. It
 // is not where a contact stands within the section and the stresses have a kink there: at the mouth of a sleeve, where
 // the exact force along a straight rod jumps by M^2 / (2 B) (D. Bigoni et al., Mechanics of Materials 80 (2015)
