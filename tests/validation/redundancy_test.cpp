@@ -138,6 +138,18 @@ TEST(Redundancy, a_rod_that_twists_goes_where_one_that_can_stretch_goes) {
   EXPECT_LT((tip[0] - tip[1]).norm(), 5e-4);
 }
 
+/// Its tip is to go there in a second.
+void bring_tip(Scene& scene, const Vec3& there) {
+  Output tip;
+  tip.rod = "rod";
+  tip.at = 0.2;
+  scene.outputs.emplace_back("tip", tip);
+  Target target;
+  target.output = "tip";
+  target.at = Track{{0.0, 1.0}, {Vec3(0.2, 0.0, 0.0), there}};
+  scene.targets.push_back(target);
+}
+
 // One tendon is told its length, the other one's is sought: it must be the opposite one, from the first step on.
 TEST(Redundancy, a_sought_length_agrees_with_one_that_is_told) {
   Scene scene = tendon_robot(2, false, Analysis::quasi_static);
@@ -147,14 +159,7 @@ TEST(Redundancy, a_sought_length_agrees_with_one_that_is_told) {
   sought.limits.displacement = Span{-0.01, 0.01};
   sought.limits.force = Span{-5.0, 20.0};
   std::get<Table>(scene.actuators[1].second.drive).values = {0.0, -0.004};
-  Output tip;
-  tip.rod = "rod";
-  tip.at = 0.2;
-  scene.outputs.emplace_back("tip", tip);
-  Target target;
-  target.output = "tip";
-  target.at = Track{{0.0, 1.0}, {Vec3(0.2, 0.0, 0.0), Vec3(0.17, 0.0, 0.08)}};
-  scene.targets.push_back(target);
+  bring_tip(scene, Vec3(0.17, 0.0, 0.08));
   const Solved solved = solve(scene);
   ASSERT_TRUE(solved.done());
   EXPECT_NEAR(motor_positions(solved.model, solved.end())[0], 0.004, 1e-8);
@@ -175,14 +180,7 @@ TEST(Redundancy, a_sought_length_beside_a_pair_that_is_told_is_left_alone) {
   sought.limits.displacement = Span{-0.01, 0.01};
   sought.limits.force = Span{-5.0, 20.0};
   scene.actuators.emplace_back("t2", sought);
-  Output tip;
-  tip.rod = "rod";
-  tip.at = 0.2;
-  scene.outputs.emplace_back("tip", tip);
-  Target target;
-  target.output = "tip";
-  target.at = Track{{0.0, 1.0}, {Vec3(0.2, 0.0, 0.0), Vec3(0.18, 0.04, 0.06)}};
-  scene.targets.push_back(target);
+  bring_tip(scene, Vec3(0.18, 0.04, 0.06));
   const Solved solved = solve(scene);
   ASSERT_TRUE(solved.done());
   EXPECT_LT(std::abs(motor_positions(solved.model, solved.end())[2]), 0.0101);

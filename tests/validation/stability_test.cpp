@@ -111,20 +111,25 @@ TEST(Stability, OfARodThatSpinsFreelyIsNotChance) {
   }
 }
 
+/// A steel pin that stands up from a hinge (1), or hangs from it (-1).
+Scene pin_on_a_hinge(double up, Analysis analysis) {
+  Scene scene = test::lone_rod(7800.0, 2);
+  scene.analysis = analysis;
+  scene.time = {0.5, 1.0};
+  scene.gravity = Vec3(0, 0, -9.81);
+  Rod& pin = scene.rods[0].second;
+  pin.path = {Vec3::Zero(), Vec3(0, 0, up * 0.01)};
+  pin.base = {BaseAxis::turn_y};
+  pin.section = Circle{4e-3};
+  pin.material.young = 2e11;
+  scene.outputs.clear();
+  return scene;
+}
+
 // A stiff pin on a hinge: its weight resists little beside its bending stiffness, 5e-8 of it, and decides all the same.
 TEST(Stability, OfAPinOnAHingeIsThatOfAPendulum) {
   for (const double up : {-1.0, 1.0}) {
-    Scene scene = test::lone_rod(7800.0, 2);
-    scene.analysis = Analysis::quasi_static;
-    scene.time = {0.5, 1.0};
-    scene.gravity = Vec3(0, 0, -9.81);
-    Rod& pin = scene.rods[0].second;
-    pin.path = {Vec3::Zero(), Vec3(0, 0, up * 0.01)};
-    pin.base = {BaseAxis::turn_y};
-    pin.section = Circle{4e-3};
-    pin.material.young = 2e11;
-    scene.outputs.clear();
-    const Model model = build(scene, test::read_block);
+    const Model model = build(pin_on_a_hinge(up, Analysis::quasi_static), test::read_block);
     Workspace workspace(model);
     State state = initial_state(model);
     const StepReport report = advance(model, workspace, state);
@@ -137,16 +142,7 @@ TEST(Stability, OfAPinOnAHingeIsThatOfAPendulum) {
 
 // And nothing resists it where the path of equilibria begins, without its weight: that is no chance of where it rests.
 TEST(Stability, OfAPinThatHangsIsNotJudgedWithoutItsWeight) {
-  Scene scene = test::lone_rod(7800.0, 2);
-  scene.analysis = Analysis::statics;
-  scene.time = {0.5, 1.0};
-  scene.gravity = Vec3(0, 0, -9.81);
-  Rod& pin = scene.rods[0].second;
-  pin.path = {Vec3::Zero(), Vec3(0, 0, -0.01)};
-  pin.base = {BaseAxis::turn_y};
-  pin.section = Circle{4e-3};
-  pin.material.young = 2e11;
-  scene.outputs.clear();
+  const Scene scene = pin_on_a_hinge(-1.0, Analysis::statics);
   const Model model = build(scene, test::read_block);
   Workspace workspace(model);
   State state = initial_state(model);
