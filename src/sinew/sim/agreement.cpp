@@ -1,6 +1,7 @@
 #include "sinew/sim/agreement.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace sinew {
 
@@ -20,13 +21,13 @@ Agreement agreement(const Model& model, const Reduced& reduced) {
     all.b.conservativeResize(first + count);
     all.A.bottomRows(count).setZero();
     all.b.tail(count) = redundant.null.transpose() * c(redundant.rows);
-    for (std::size_t i = 0; i < redundant.rows.size(); ++i) {
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const int row = model.actuators[model.sought[static_cast<std::size_t>(a)]].row;
+      const auto place = std::lower_bound(redundant.rows.begin(), redundant.rows.end(), row);
+      if (place == redundant.rows.end() || *place != row) continue;
+      const auto part = redundant.null.row(place - redundant.rows.begin());
       // (Rows of a group that have no part in a combination are there by rounding.)
-      if (redundant.null.row(static_cast<Eigen::Index>(i)).norm() < kNoPart) continue;
-      for (Eigen::Index a = 0; a < n; ++a) {
-        if (model.actuators[model.sought[static_cast<std::size_t>(a)]].row == redundant.rows[i])
-          all.A.col(a).tail(count) = redundant.null.row(static_cast<Eigen::Index>(i)).transpose();
-      }
+      if (part.norm() >= kNoPart) all.A.col(a).tail(count) = part.transpose();
     }
   }
   return all;

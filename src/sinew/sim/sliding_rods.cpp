@@ -138,14 +138,13 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
       closest = std::min(closest, spacing);
       const double from = std::max(0.0, state.points[one].s), middle = 0.5 * (from + s);
       const rod::Section& section = section_at(rod, middle);
-      const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, middle);
-      const double young = softness_about(model.solids[point.solid], point.where);
+      const double sections = spacing / section.length();
       for (const int strain : {1, 2}) {
         const int order = bending_order(section, strain);
-        if (order < 0) continue;
-        const double sections = spacing / section.length();
-        if (std::ldexp(sections, order) >= kFewSections) continue;
-        const double equivalent = std::ldexp(sections, order) * spread_of(stiffness(strain, strain), young, spacing);
+        if (order < 0 || std::ldexp(sections, order) >= kFewSections) continue;
+        const double stiffness = rod::stiffness_at(rod.profile, middle)(strain, strain),
+                     young = softness_about(model.solids[point.solid], point.where),
+                     equivalent = std::ldexp(sections, order) * spread_of(stiffness, young, spacing);
         if (equivalent >= kFewSections) continue;
         const double change = std::max(change_of_density(model, state, number, strain, from, spacing),
                                        change_of_density(model, state, number, strain, s, spacing)),

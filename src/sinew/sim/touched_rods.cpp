@@ -48,15 +48,6 @@ Missed missed_between(const rod::Rod& rod, const RodState& state, const rod::Sec
   return missed;
 }
 
-/// Visits the columns of `internal` that begin and end in a section, from `column` on, which goes on to the next.
-template <class Visit>
-void each_within(const Eigen::MatrixXd& internal, const rod::Section& section, Eigen::Index& column,
-                 const Visit& visit) {
-  for (; column + 1 < internal.cols() && internal(0, column + 1) <= section.end; ++column) {
-    if (internal(0, column) >= section.begin && internal(0, column + 1) > internal(0, column)) visit(column);
-  }
-}
-
 /// Whether a contact presses on the rod in a section, or next to it: contacts follow a rod beyond their pieces.
 bool is_pressed_in(const State& state, int rod, const rod::Section& section) {
   const auto presses_there = [&](const ContactSide& side) {
@@ -78,20 +69,18 @@ double configurational_error(const Model& model, const State& state, int number)
   double error = 0.0, largest = 0.0;
   Eigen::Index column = 0;
   for (const rod::Section& section : rod.sections) {
-    const Eigen::Index first = column;
+    const bool pressed = is_pressed_in(state, number, section);
     Missed all;
     rod::Vec6 change = rod::Vec6::Zero();
-    if (!is_pressed_in(state, number, section)) {
-      each_within(internal, section, column, [](Eigen::Index) {});
-      continue;
-    }
-    each_within(internal, section, column, [&](Eigen::Index k) {
-      const Missed own = missed_between(rod, state.rods[number], section, k);
+    for (; column + 1 < internal.cols() && internal(0, column + 1) <= section.end; ++column) {
+      const double begin = internal(0, column), end = internal(0, column + 1);
+      if (!pressed || begin < section.begin || end <= begin) continue;
+      const Missed own = missed_between(rod, state.rods[number], section, column);
       all.sum += own.sum;
       all.work += own.work;
-      change += internal.block<6, 1>(1, k + 1) - internal.block<6, 1>(7, k);
-    });
-    if (column > first) error += all.work - all.sum.dot(change) / section.length();
+      change += internal.block<6, 1>(1, column + 1) - internal.block<6, 1>(7, column);
+    }
+    error += all.work - all.sum.dot(change) / section.length();
     largest = std::max(largest, std::abs(error));
   }
   return largest;
