@@ -138,6 +138,29 @@ TEST(Redundancy, a_rod_that_twists_goes_where_one_that_can_stretch_goes) {
   EXPECT_LT((tip[0] - tip[1]).norm(), 5e-4);
 }
 
+// No strain of a straight rod that cannot stretch answers what holds its far end along it; bent ones do, a little: to
+// hold them to the last digit would lock the rod by forces of any size.
+TEST(Redundancy, a_rod_held_at_both_ends_bends_as_one_that_can_stretch) {
+  for (const bool turns : {false, true}) {
+    SCOPED_TRACE(turns);
+    double sag[2];
+    for (const bool elongation : {false, true}) {
+      Scene scene = straight_rod(0.2, 4, Circle{0.005}, elongation ? kExtensible : kBending, 1, 20);
+      scene.rods[0].second.material = {1e6, 0.5, 1100.0};
+      add_tie(scene, {true, true, true}, {turns, turns, turns});
+      add_load(scene, Vec3(0.0, 0.0, 0.05), Vec3::Zero(), 0.1);
+      const Solved solved = solve(scene);
+      ASSERT_TRUE(solved.done());
+      sag[elongation ? 1 : 0] = solved.at(0.1).z();
+      const Warning* gave = find_warning(solved.trace.reports.back().warnings, "constraints_give_way");
+      ASSERT_EQ(gave != nullptr, !elongation);
+      if (gave) EXPECT_NEAR(gave->value, 0.2 - solved.tip().x(), 1e-9);
+    }
+    EXPECT_GT(sag[1], 3e-3);
+    EXPECT_NEAR(sag[0], sag[1], 0.03 * sag[1]);
+  }
+}
+
 /// Its tip is to go there in a second.
 void bring_tip(Scene& scene, const Vec3& there) {
   Output tip;

@@ -196,6 +196,27 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
   }
 }
 
+/// How far rows give way that nothing answered at the start and something does here.
+void assess_give(const Model& model, const Reduced& reduced, Warnings& warnings) {
+  constexpr double kGive = 1e-4;  // of the scene's size
+  for (const RedundantRows& own : reduced.redundant) {
+    double most = 0.0;
+    for (const int row : own.rows) {
+      if (own.give.size() > 0) most = std::max(most, std::abs(reduced.given[row]) * arm_of(model, row));
+    }
+    if (!(most > kGive * model.size)) continue;
+    warnings.add({.code = "constraints_give_way",
+                  .where = name_of_rows(model, own.rows),
+                  .message = "constraints that no strain could answer at the start ask for some in this posture; "
+                             "instead they give way by " +
+                             three_digits(1e3 * most) + " mm, about as much as real rods would",
+                  .remedy = remedy_of_rows(model, own.rows),
+                  .value = most,
+                  .limit = kGive * model.size,
+                  .unit = "m"});
+  }
+}
+
 /// Bases of rods and bodies that an equilibrium leaves free: they stand where they came by chance. (Those that contacts
 /// press on may be held by these.)
 void assess_free(const Model& model, const Linearization& here, const State& state, Warnings& warnings) {
@@ -239,6 +260,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   assess_contacts(model, fixed, report, warnings);
   if (fixed) assess_linearisation(model, report, warnings);
   assess_redundancy(model, here, warnings);
+  assess_give(model, here.reduced(), warnings);
   for (Warning& own : assess_sliding_rods(model, next)) warnings.add(std::move(own));
   for (Warning& own : assess_touched_rods(model, next)) warnings.add(std::move(own));
   // (Where a path of equilibria begins, nothing acts yet.)

@@ -264,7 +264,8 @@ struct EffectorModel {
 /// Rows that depend on each other at the start of a run (sim/redundancy).
 struct RedundantGroup {
   std::vector<int> rows;  ///< of lambda, ascending
-  Eigen::MatrixXd null;   ///< combinations that nothing answers there, of rows scaled to length 1: orthonormal columns
+  Eigen::VectorXd norms;  ///< of the rows there, 1 of those that nothing answers
+  Eigen::MatrixXd null;   ///< combinations that nothing answers there, of rows over these: orthonormal columns
   double give = 0.0;      ///< [m/N] compliance of what would answer them, if the rods could stretch
   /// Where commands alone say what the rows ask for (no motor chooses): the same combinations of the
   /// rows as they are, with norm 1. What contradicts them is no matter of posture, and nothing gives way.

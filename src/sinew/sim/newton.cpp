@@ -122,6 +122,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   Linearization& here = memory.here;
   Increment& increment = memory.increment;
   double stiffness = 0.0;
+  const double met = context.model.scene.newton.tolerance * context.model.size;  // [m] rows with less are met
   // Where more than `left` [m] of the rows is what no motion can answer, that is the reason.
   const auto contradicts = [&](double left) {
     const RedundantRows* const rows = here.contradicting(left);
@@ -134,8 +135,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.contact = here.contact_report();
     report.status = status;
     report.detail = std::move(detail);
-    if (contradicts(std::max(0.5 * report.violation, 10.0 * context.model.scene.newton.tolerance * context.model.size)))
-      return report;
+    if (contradicts(std::max(0.5 * report.violation, 10.0 * met))) return report;
     // Rows that once depended on each other may do so no longer by a hair: no force is large enough then.
     const std::vector<Warning>& known = context.model.warnings;
     const auto told = std::find_if(known.begin(), known.end(),
@@ -212,10 +212,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     }
     const Convergence converged = convergence_of(context.model, here, stiffness);
     const double contact_error = rules.fixed ? 0.0 : here.contact_error();
-    if (rules.fixed ? report.newton == rules.limit
-                    : report.newton > 0 && converged.met &&
-                          contact_error <= context.model.scene.newton.tolerance * context.model.size) {
-      if (!rules.fixed && contradicts(10.0 * context.model.scene.newton.tolerance * context.model.size)) {
+    if (rules.fixed ? report.newton == rules.limit : report.newton > 0 && converged.met && contact_error <= met) {
+      if (!rules.fixed && contradicts(10.0 * met)) {
         report.contact = here.contact_report();
         return report;
       }
@@ -246,7 +244,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (!here.reduced().redundant.empty() && report.newton > 1) {  // forces are balanced, and rows do not get nearer
       const bool balanced_forces = here.largest() <= 1e-6 * here.scale();
       const bool stays = contradiction > 0.0 && report.violation > 0.999 * contradiction;
-      if (balanced_forces && stays && contradicts(0.9 * report.violation)) {
+      if (balanced_forces && stays && contradicts(std::max(0.9 * report.violation, met))) {
         report.contact = here.contact_report();
         return report;
       }

@@ -70,8 +70,8 @@ std::vector<std::size_t> entangled(const RowJacobian& J) {
   return left;
 }
 
-/// Columns that some rows use, in their order, as rows of a dense matrix: J^T, each column scaled to length 1; zero
-/// rows stay zero. `norms` of the rows.
+/// Columns that some rows use, in their order, as rows of a dense matrix: J^T, each column over its length, or over
+/// that in `norms` where it is longer; zero rows stay zero. `norms` becomes what they were divided by, or 0.
 Eigen::MatrixXd dense_transposed(const RowJacobian& J, const std::vector<std::size_t>& rows, Eigen::VectorXd& norms) {
   std::map<int, Eigen::Index> place;
   for (const std::size_t i : rows) {
@@ -79,10 +79,10 @@ Eigen::MatrixXd dense_transposed(const RowJacobian& J, const std::vector<std::si
   }
   Eigen::MatrixXd dense =
       Eigen::MatrixXd::Zero(std::max<Eigen::Index>(1, std::ssize(place)), static_cast<Eigen::Index>(rows.size()));
-  norms.resize(dense.cols());
+  norms.conservativeResizeLike(Eigen::VectorXd::Zero(dense.cols()));
   for (Eigen::Index k = 0; k < dense.cols(); ++k) {
     const Row& row = J.of(rows[static_cast<std::size_t>(k)]);
-    norms[k] = norm_of(row);
+    norms[k] = std::max(norms[k], norm_of(row));
     if (!(norms[k] > kZero)) continue;
     for (const Entry& entry : row) dense(place[entry.column], k) = entry.value / norms[k];
   }
@@ -118,8 +118,8 @@ struct Near {
 };
 Near nearly_null(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Eigen::MatrixXd& start,
                  const Eigen::MatrixXd& null) {
-  Near near;
   const Eigen::Index count = qr.cols(), wanted = start.cols() - null.cols();
+  Near near{Eigen::MatrixXd(count, 0), {}};
   if (wanted <= 0 || count > kMostNear) return near;
   const Eigen::Index rows = std::min(qr.rows(), count);
   const Eigen::MatrixXd R = qr.matrixR().topRows(rows).triangularView<Eigen::Upper>();
@@ -324,7 +324,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 RedundantRows redundant_rows(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
                              const std::vector<int>& rows) {
-  return redundant_rows(model, iterate, problem, RedundantGroup{rows, {}, 0.0, {}});
+  return redundant_rows(model, iterate, problem, RedundantGroup{rows, {}, {}, 0.0, {}});
 }
 
 RedundantRows redundant_rows(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
@@ -334,7 +334,7 @@ RedundantRows redundant_rows(const Model& model, const State& iterate, const sol
   const RowJacobian J(model, iterate, problem, rows);
   std::vector<std::size_t> all(rows.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd norms;
+  Eigen::VectorXd norms = group.norms;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(dense_transposed(J, all, norms));
   Eigen::MatrixXd null = null_space(qr);
   own.exact = null.cols();
@@ -423,7 +423,7 @@ double contradiction_of(const Model& model, const RedundantGroup& group, const s
 
 RedundantGroup redundant_group(const Model& model, const State& iterate, const solve::CoupledProblem& problem,
                                const std::vector<int>& rows) {
-  RedundantGroup group{rows, {}, model.size / model.bearing, {}};
+  RedundantGroup group{rows, {}, {}, model.size / model.bearing, {}};
   const RowJacobian J(model, iterate, problem, rows);
   std::vector<std::size_t> all(rows.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -434,6 +434,7 @@ RedundantGroup redundant_group(const Model& model, const State& iterate, const s
   for (Eigen::Index i = 0; i < norms.size(); ++i) {
     if (norms[i] > kZero) null.row(i) /= norms[i];
   }
+  group.norms = (norms.array() > kZero).select(norms, 1.0);
   if (!is_chosen(model, rows)) group.told = null.colwise().normalized();
   double longest = 0.0;
   for (const int number : rods_of(model, rows)) {

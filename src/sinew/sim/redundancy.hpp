@@ -22,7 +22,8 @@
 //     c + alpha S N N^T S lambda = 0,      alpha = (1 - (sigma / sigma_1)^2)^2 give,
 //
 // with sigma the singular value of N in the scaled rows: the smallest multipliers again where nothing comes apart
-// (N^T c = 0), and rows as told where they are independent in earnest (sigma_1 = 0.1 and beyond).
+// (N^T c = 0), and rows as told where they are independent in earnest (sigma_1 = 0.1 and beyond). A row alone does the
+// same, scaled by its lever arm: that of a straight rod held at both ends, which comes to be answered as the rod bends.
 #pragma once
 
 #include <Eigen/Core>
