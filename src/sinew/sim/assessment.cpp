@@ -200,10 +200,9 @@ void assess_redundancy(const Model& model, const Linearization& here, Warnings& 
 void assess_give(const Model& model, const Reduced& reduced, Warnings& warnings) {
   constexpr double kGive = 1e-4;  // of the scene's size
   for (const RedundantRows& own : reduced.redundant) {
+    if (own.give.size() == 0) continue;
     double most = 0.0;
-    for (const int row : own.rows) {
-      if (own.give.size() > 0) most = std::max(most, std::abs(reduced.given[row]) * arm_of(model, row));
-    }
+    for (const int row : own.rows) most = std::max(most, std::abs(reduced.given[row]) * arm_of(model, row));
     if (!(most > kGive * model.size)) continue;
     warnings.add({.code = "constraints_give_way",
                   .where = name_of_rows(model, own.rows),

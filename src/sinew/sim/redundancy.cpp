@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "sinew/sim/row_jacobian.hpp"
 
@@ -88,6 +89,24 @@ Eigen::MatrixXd dense_transposed(const RowJacobian& J, const std::vector<std::si
   }
   return dense;
 }
+
+/// J^T of all rows, scaled, and what they were divided by: at least `norms`, 0 of zero rows.
+struct ScaledRows {
+  Eigen::VectorXd norms;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+
+  explicit ScaledRows(const RowJacobian& J, Eigen::VectorXd at_least = {}) : norms(std::move(at_least)) {
+    std::vector<std::size_t> all(J.rows().size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    qr.compute(dense_transposed(J, all, norms));
+  }
+  /// Combinations of scaled rows as those of the rows as they are.
+  void unscale(Eigen::MatrixXd& combinations) const {
+    for (Eigen::Index i = 0; i < norms.size(); ++i) {
+      if (norms[i] > kZero) combinations.row(i) /= norms[i];
+    }
+  }
+};
 
 /// Combinations n of scaled rows with J^T n = 0, a column each.
 Eigen::MatrixXd null_space(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
@@ -332,19 +351,14 @@ RedundantRows redundant_rows(const Model& model, const State& iterate, const sol
   RedundantRows own;
   const std::vector<int>& rows = group.rows;
   const RowJacobian J(model, iterate, problem, rows);
-  std::vector<std::size_t> all(rows.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd norms = group.norms;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(dense_transposed(J, all, norms));
-  Eigen::MatrixXd null = null_space(qr);
+  const ScaledRows scaled_rows(J, group.norms);
+  Eigen::MatrixXd null = null_space(scaled_rows.qr);
   own.exact = null.cols();
-  const Near near = nearly_null(qr, group.null, null);
-  null.conservativeResize(qr.cols(), own.exact + near.vectors.cols());
+  const Near near = nearly_null(scaled_rows.qr, group.null, null);
+  null.conservativeResize(null.rows(), own.exact + near.vectors.cols());
   null.rightCols(near.vectors.cols()) = near.vectors;
   if (null.cols() == 0) return own;
-  for (Eigen::Index i = 0; i < norms.size(); ++i) {
-    if (norms[i] > kZero) null.row(i) /= norms[i];
-  }
+  scaled_rows.unscale(null);
   // What the rows take of those that hold auxiliary unknowns goes with them.
   std::map<int, Eigen::RowVectorXd> of_row;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -425,16 +439,12 @@ RedundantGroup redundant_group(const Model& model, const State& iterate, const s
                                const std::vector<int>& rows) {
   RedundantGroup group{rows, {}, {}, model.size / model.bearing, {}};
   const RowJacobian J(model, iterate, problem, rows);
-  std::vector<std::size_t> all(rows.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd norms;
-  Eigen::MatrixXd null = null_space(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(dense_transposed(J, all, norms)));
+  const ScaledRows scaled_rows(J);
+  Eigen::MatrixXd null = null_space(scaled_rows.qr);
   // (What a frame asks for as it moves cannot be told from what a posture does: nothing gives way.)
   if (null.cols() > 0 && !is_carried(model, rows)) group.null = orthonormal(null);
-  for (Eigen::Index i = 0; i < norms.size(); ++i) {
-    if (norms[i] > kZero) null.row(i) /= norms[i];
-  }
-  group.norms = (norms.array() > kZero).select(norms, 1.0);
+  scaled_rows.unscale(null);
+  group.norms = (scaled_rows.norms.array() > kZero).select(scaled_rows.norms, 1.0);
   if (!is_chosen(model, rows)) group.told = null.colwise().normalized();
   double longest = 0.0;
   for (const int number : rods_of(model, rows)) {

@@ -125,10 +125,11 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
       const PointModel& point = model.points[k];
       const double s = state.points[k].s, spacing = last >= 0 ? s - state.points[last].s : 0.0;
       const Vec3 force = state.lambda.segment<3>(point.row);
+      const double rubs = point.friction * force.norm();
       pressed += force.norm();
-      friction += point.friction * force.norm();
-      if (point.friction * force.norm() > rubs_most) {
-        rubs_most = point.friction * force.norm();
+      friction += rubs;
+      if (rubs > rubs_most) {
+        rubs_most = rubs;
         rubbing = point.coupling;
       }
       if (force.dot(before) < 0.0) against += std::min(before.norm(), force.norm());
