@@ -315,8 +315,8 @@ Found look_at(Kind first, Kind second, int placements, double bend, unsigned see
 /// The largest error that docs/contact.md promises [m]; where two bent rods lie along each other both chords are off.
 double promised(Kind first, Kind second, double bend) {
   const auto is = [&](Kind kind) { return first == kind || second == kind; };
-  const bool round = is(Kind::plane) || is(Kind::sphere), triangles = is(Kind::mesh) || is(Kind::solid);
-  double error = triangles ? 1e-5 : 1e-6;
+  const bool round = is(Kind::plane) || is(Kind::sphere);
+  double error = 1e-6;
   if (is(Kind::cylinder)) error = round ? 1e-5 : first == second ? 1.3e-3 : 7e-4;
   if (is(Kind::rod) && bend > 0.0) error = std::max(error, is(Kind::cylinder) || first == second ? 1.5e-3 : 1e-3);
   return error;

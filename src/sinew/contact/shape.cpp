@@ -69,7 +69,7 @@ struct NearestPart {
   /// there is none. Where a node lies on a rim, rounding is not to choose.
   int face_of_rim(const Polyhedron& own, double height) const {
     if (outward.isZero()) return -1;
-    const double same = 1e-3 * own.corners[0].norm();
+    const double same = 1e-6 * own.corners[0].norm();
     int best = -1;
     double least = INFINITY;
     for (std::size_t f = 0; f < own.faces.size(); ++f) {
