@@ -132,10 +132,13 @@ class Time(Part):
 
     step: The time step [s]; for example "10 ms"; if left out 0.01.
     duration: The time at which the run ends [s]; for example "2 s"; if left out 1.0.
+    smallest: The smallest part of a step that is tried where the whole does not converge [s]; if not told, 1e-4 of the
+        step, and a 64th of a linearised one (`newton: n`); for example "1 us"; if left out 0.0.
     """
 
     step: Quantity | None = None
     duration: Quantity | None = None
+    smallest: Quantity | None = None
 
 
 @dataclass(kw_only=True)

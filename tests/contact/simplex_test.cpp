@@ -188,6 +188,18 @@ TEST(Simplex, ParallelSegmentsMeetInTheMiddleOfWhatLiesSideBySide) {
   EXPECT_NEAR(found.gap, 1.0, 1e-12);
 }
 
+// Across two parallel lines is what rounding says.
+TEST(Simplex, ParallelEdgesOfBodiesAreApartAlongTheirDistance) {
+  for (const double off : {0.0, 1e-17, -3e-16, 1e-10}) {
+    const Simplex edge = segment_at(Vec3(0, -1, 0.5), Vec3(off, 1, 0.5), Vec3(0, 0, 1), 0.0),
+                  axis = segment_at(Vec3(0.3, -2, 1), Vec3(0.3, 2, 1 + off), Vec3::Zero(), 0.2);
+    const Facing kept = facing(axis, edge);
+    const Nearest found = nearest(axis, edge, kept);
+    EXPECT_LT((found.normal - Vec3(0.3, 0, 0.5).normalized()).norm(), 1e-9) << off;
+    EXPECT_NEAR(found.gap, std::hypot(0.3, 0.5) - 0.2, 1e-9) << off;
+  }
+}
+
 TEST(Simplex, ThicknessIsTakenOff) {
   Simplex a, b;
   a.x[0] = Vec3(0, 0, 3);

@@ -5,7 +5,7 @@ namespace sinew::io {
 
 inline constexpr const char* full_scene = R"(# A finger with one cable.
 title: A finger pulled by one cable
-time: {step: 10 ms, duration: 2 s}
+time: {step: 10 ms, duration: 2 s, smallest: 10 us}
 gravity: [0, -9.81, 0]
 newton: {iterations: converged, limit: 20, tolerance: 1e-10, precision: single}
 view: {interval: 20 ms}

@@ -31,7 +31,7 @@ TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
 
 /// Where this has to change, kStateLayout has to be raised.
 TEST(State, is_packed_in_the_order_that_its_layout_names) {
-  ASSERT_EQ(kStateLayout, 6u);
+  ASSERT_EQ(kStateLayout, 7u);
   double next = 0.0;
   const auto number = [&next] { return next += 1.0; };
   const auto fill = [&](auto& array, int rows, int columns) {
@@ -41,6 +41,8 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   State state;
   state.grid = static_cast<long>(number());
   number();  // contacts
+  state.halvings = static_cast<int>(number());
+  state.spent = static_cast<int>(number());
   state.points.push_back({0.0, 0.0, true});
   number();  // on
   state.path.stable = true;
@@ -88,7 +90,7 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   contact.slip = number();
   std::vector<double> expected(static_cast<std::size_t>(next));
   std::iota(expected.begin(), expected.end(), 1.0);
-  expected[1] = expected[2] = expected[3] = expected[on_second] = 1.0;  // contacts, on, stable
+  expected[1] = expected[4] = expected[5] = expected[on_second] = 1.0;  // contacts, on, stable
   EXPECT_EQ(pack(state), expected);
 }
 

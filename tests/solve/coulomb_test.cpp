@@ -122,6 +122,24 @@ TEST(Coulomb, GoesOnFromWhereItIs) {
   EXPECT_EQ(again.sweeps + again.newton, 0);
 }
 
+// D of bodies that would buckle but for their contacts: sweeps, which look at one contact after the other, let go.
+TEST(Coulomb, HoldsWhatWouldBuckle) {
+  Random random;
+  for (int trial = 0; trial < 200; ++trial) {
+    constexpr int kContacts = 4;
+    CoulombProblem problem = definite(random, kContacts, 0.5);
+    const VectorXd soft = random.matrix(3 * kContacts, 1);
+    problem.D -= (2.0 + trial % 7) * soft * soft.transpose();
+    VectorXd wanted = 0.1 * random.matrix(3 * kContacts, 1);
+    for (int i = 0; i < kContacts; ++i) wanted[3 * i] = 1.5 + 0.5 * random();
+    problem.b = -problem.D * wanted;  // all hold and stick
+    VectorXd lambda = wanted + 0.05 * random.matrix(3 * kContacts, 1);
+    Coulomb solver;
+    EXPECT_TRUE(solver.solve(problem, 1e-10, lambda).solved);
+    EXPECT_LT((lambda - wanted).norm(), 1e-7);
+  }
+}
+
 TEST(Coulomb, ResidualTellsEachLaw) {
   CoulombProblem problem{Matrix3d::Identity(), Vector3d(-1.0, 0.0, 0.0), VectorXd::Constant(1, 0.5)};
   EXPECT_NEAR(residual(problem, Vector3d(1.0, 0.0, 0.0)).largest(), 0.0, 1e-15);

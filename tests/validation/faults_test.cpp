@@ -504,6 +504,20 @@ TEST(Faults, frame_turns_rod) {
   EXPECT_GT(run.last("energy.work"), 1e3 * run.largest("energy.kinetic"));
 }
 
+// A tie that leaves one turn free stopped at 90 degrees of it.
+TEST(Faults, tie_free_turn) {
+  for (const char* turn : {"200 deg", "-200 deg", "800 deg"}) {
+    SCOPED_TRACE(turn);
+    const RecordedRun run =
+        fault("tie_free_turn", {"frames.two.motion.rotate=[[0, 0, 0], [" + std::string(turn) + ", 0, 0]]"});
+    ASSERT_TRUE(run.done()) << run.why();
+    for (const char axis : {'x', 'y', 'z'}) {
+      const double there = axis == 'x' ? 145.12e-3 : axis == 'y' ? 0.0 : -79.20e-3;
+      EXPECT_NEAR(run.last(std::string("mid.") + axis), there, 0.01e-3);
+    }
+  }
+}
+
 // A capsule that turns on the floor in long steps gains energy, and says so.
 TEST(Faults, body_gains) {
   const RecordedRun run = fault("body_gains");

@@ -145,6 +145,30 @@ TEST(Tie, clamp_follows_a_frame_through_a_large_motion) {
   EXPECT_LT((solved.frame(L) - hand.R).norm(), 1e-8);
 }
 
+// A frame turns twice about the axis that a tie leaves free: the rod's tip goes on pointing along that axis, the rod
+// stays as it is, and moments are about the axes that are held.
+class FreeTurn : public testing::TestWithParam<int> {};
+
+TEST_P(FreeTurn, goes_round_and_round) {
+  const int free = GetParam();
+  std::array<bool, 3> about = {true, true, true};
+  about[static_cast<std::size_t>(free)] = false;
+  Scene scene = straight_rod(L, 8, given({GJ, EI, EI, 1e3, 1e3, 1e3}), kAll, 1, 60);
+  Frame frame;
+  frame.motion = FrameMotion{{0.0, 1.0}, {Vec3::Zero(), 4.0 * pi * Vec3::Unit(free)}, {Vec3::Zero(), Vec3::Zero()}};
+  scene.frames.emplace_back("hand", frame);
+  add_tie(scene, {false, false, false}, about).frame = "hand";
+  add_load(scene, EI * Vec3(0.3, 0.5, -0.4));
+  const Solved solved = solve(scene);
+  scene.couplings.clear();
+  scene.frames.clear();
+  add_tie(scene, {false, false, false}, about);
+  const Solved still = solve(scene);
+  EXPECT_LT((solved.tip() - still.tip()).norm(), 1e-7);
+  EXPECT_LT((solved.frame(L).col(free) - Vec3::Unit(free)).norm(), 1e-8);
+}
+INSTANTIATE_TEST_SUITE_P(Axes, FreeTurn, testing::Range(0, 3));
+
 /// A second rod that comes towards the first one's tip along -x from `from`.
 Tie& add_second(Scene& scene, double from, int sections, const std::vector<BaseAxis>& base) {
   Rod second = scene.rods[0].second;

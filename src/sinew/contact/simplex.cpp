@@ -86,13 +86,22 @@ Vec3 point_of(const Simplex& simplex, const std::array<double, 3>& weights) {
   return p;
 }
 
+/// The sine below which two segments are parallel: the direction across both is rounding's.
+constexpr double kParallel = 1e-6;
+
+/// Across two segments; zero where they are parallel.
+Vec3 across(const Simplex& a, const Simplex& b) {
+  const Vec3 d = a.x[1] - a.x[0], e = b.x[1] - b.x[0], n = d.cross(e);
+  return n.norm() > kParallel * d.norm() * e.norm() ? n : Vec3(Vec3::Zero());
+}
+
 /// The nearest points of two segments. Where they are parallel, the middle of what lies side by side.
 void cross_segments(const Simplex& a, const Simplex& b, Nearest& found) {
   const Vec3 d = a.x[1] - a.x[0], e = b.x[1] - b.x[0], r = a.x[0] - b.x[0];
   const double dd = d.squaredNorm(), ee = e.squaredNorm(), de = d.dot(e), dr = d.dot(r), er = e.dot(r);
   const double apart = dd * ee - de * de;
   double s = 0.5;
-  if (apart > 1e-12 * dd * ee) {
+  if (apart > kParallel * kParallel * dd * ee) {
     s = std::clamp((de * er - ee * dr) / apart, 0.0, 1.0);
   } else if (dd > 0.0) {
     // b's ends along a.
@@ -124,14 +133,14 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
   if (a.kind == segment && b.kind == segment) {
     cross_segments(a, b, found);
     const double s = found.a[1], t = found.b[1];
-    const Vec3 across = (a.x[1] - a.x[0]).cross(b.x[1] - b.x[0]);
+    const Vec3 both = across(a, b);
     const bool inside = s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0;
     // Edges of bodies cross on the outside of both, which `normal` of b tells; thick ones are apart.
-    if (inside && b.normal.squaredNorm() > 0.0 && across.squaredNorm() > 0.0) {
-      found.normal = across.normalized() * (across.dot(b.normal) < 0.0 ? -1.0 : 1.0);
+    if (inside && b.normal.squaredNorm() > 0.0 && !both.isZero(0.0)) {
+      found.normal = both.normalized() * (both.dot(b.normal) < 0.0 ? -1.0 : 1.0);
       found.gap = found.normal.dot(point_of(a, found.a) - point_of(b, found.b));
     } else {
-      const Vec3 otherwise = b.normal.isZero() && !across.isZero() ? Vec3(across.normalized()) : b.normal;
+      const Vec3 otherwise = b.normal.isZero() && !both.isZero(0.0) ? Vec3(both.normalized()) : b.normal;
       along_distance(a, b, otherwise, found);
     }
   } else if (a.kind == point) {
@@ -179,8 +188,6 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
 
 namespace {
 
-Vec3 across(const Simplex& a, const Simplex& b) { return (a.x[1] - a.x[0]).cross(b.x[1] - b.x[0]); }
-
 Vec3 face_normal(const Simplex& b) {
   return b.kind == Simplex::Kind::plane ? b.normal : Vec3((b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]).normalized());
 }
@@ -202,7 +209,7 @@ Facing facing(const Simplex& a, const Simplex& b) {
     if (thin && (inside(found.b, 3) || std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
   }
   if (a.kind == segment && b.kind == segment && inside(found.a, 2) && inside(found.b, 2) && !b.normal.isZero() &&
-      !across(a, b).isZero())
+      !across(a, b).isZero(0.0))
     return {crossing, found.normal};
   return {thin ? fixed : apart, found.normal};
 }
@@ -214,7 +221,7 @@ Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
   if (kept.kind == Facing::Kind::face) found.normal = face_normal(b);
   if (kept.kind == Facing::Kind::crossing) {
     const Vec3 both = across(a, b).normalized();
-    if (!both.isZero()) found.normal = both.dot(kept.normal) < 0.0 ? Vec3(-both) : both;
+    if (!both.isZero(0.0)) found.normal = both.dot(kept.normal) < 0.0 ? Vec3(-both) : both;
   }
   found.gap = found.normal.dot(point_of(a, found.a) + lowest_on_rim(a, found.normal) - point_of(b, found.b)) -
               a.radius - b.radius;

@@ -82,11 +82,17 @@ Type<Pose> pose() {
 }
 
 Type<Time> time_of_run() {
-  return map<Time>({"time",
-                    {field<Time>({"step", optional, "the time step [s]", "10 ms"}, &Time::step,
-                                 quantity(Dimension::time, above(0.0))),
-                     field<Time>({"duration", optional, "the time at which the run ends [s]", "2 s"}, &Time::duration,
-                                 quantity(Dimension::time, at_least(0.0)))}});
+  return map<Time>(
+      {"time",
+       {field<Time>({"step", optional, "the time step [s]", "10 ms"}, &Time::step,
+                    quantity(Dimension::time, above(0.0))),
+        field<Time>({"duration", optional, "the time at which the run ends [s]", "2 s"}, &Time::duration,
+                    quantity(Dimension::time, at_least(0.0))),
+        field<Time>({"smallest", optional,
+                     "the smallest part of a step that is tried where the whole does not converge [s]; if not told, "
+                     "1e-4 of the step, and a 64th of a linearised one (`newton: n`)",
+                     "1 us"},
+                    &Time::smallest, quantity(Dimension::time, above(0.0)))}});
 }
 
 Time time_of_run(const At& at) {

@@ -156,6 +156,23 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
   }
 }
 
+int ContactForces::held(const ContactRoom& room) const {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < touching_.size(); ++i) {
+    const Touch& touch = room.touches[static_cast<std::size_t>(touching_[i])];
+    const Vec3 force = touch.frame.transpose() * touch.force;
+    if (!(force[0] > 0.0)) continue;
+    const auto k = static_cast<Eigen::Index>(3 * i);
+    rows.push_back(k);
+    const double limit = problem_.mu[static_cast<Eigen::Index>(i)] * force[0];
+    if (force.tail<2>().norm() < (1.0 - 1e-6) * limit) rows.insert(rows.end(), {k + 1, k + 2});
+  }
+  if (rows.empty()) return 0;
+  const Eigen::MatrixXd D = problem_.D(rows, rows);
+  const Eigen::VectorXd own = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(D, Eigen::EigenvaluesOnly).eigenvalues();
+  return static_cast<int>((own.array() < -1e-12 * own.cwiseAbs().maxCoeff()).count());
+}
+
 /// What forces at the contacts add to a right side of the reduced problem.
 void ContactForces::push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
                          solve::RightSide& side) {
@@ -306,12 +323,17 @@ void ContactForces::watched_motion(const StepContext& context, const std::vector
 
 double ContactForces::error(const StepContext& context, const State& iterate, const ContactRoom& room) const {
   if (!wanted(context.model, room)) return 0.0;
-  if (problem_.D.rows() != 3 * contacts() || touching_ != room.playing) return INFINITY;
+  if (problem_.D.rows() != 3 * contacts() || touching_ != room.playing) {  // of open ones no compliance is asked for
+    if (!context.model.rubbing.empty()) return INFINITY;
+    const auto open = [&](int i) {
+      return iterate.contacts[i].force.isZero(0.0) && room.touches[i].u[0] >= room.least[i];
+    };
+    return std::all_of(room.playing.begin(), room.playing.end(), open) ? 0.0 : INFINITY;
+  }
   double worst = 0.0;
   for (int i = 0; i < contacts(); ++i) {
-    const Eigen::Index k = 3 * i;
     const auto [force, u] = at(context, iterate, room, i);
-    const double normal = problem_.D(k, k), tangent = 0.5 * (problem_.D(k + 1, k + 1) + problem_.D(k + 2, k + 2));
+    const auto [normal, tangent] = solve::own_compliance(problem_, i);
     worst = std::max(worst, std::abs(std::min(normal * force[0], u[0])));
     const double radius = problem_.mu[i] * std::max(0.0, force[0]) * tangent;
     const Eigen::Vector2d t = tangent * force.tail<2>(), aim = t - u.tail<2>();

@@ -33,6 +33,9 @@ class ContactForces {
   /// included. `factor` and `free` must be factored. Where a rod rubs in its channel, J is the point's abscissa.
   void prepare(const StepContext& context, const State& iterate, const ContactRoom& room, const Reduced& reduced,
                std::vector<FreeMotion>& free, solve::CoupledFactor& factor);
+  /// How many directions in which the step's matrix A is negative are held by contacts that press and stick: the
+  /// negative eigenvalues of their part of D. `prepare` must have gone before.
+  int held(const ContactRoom& room) const;
   /// Finds the forces that go with the solution so far, and adds to it what they change.
   void solve(const StepContext& context, const State& iterate, const ContactRoom& room, std::vector<FreeMotion>& free,
              solve::CoupledFactor& factor, solve::CoupledSolution& solution, ContactChange& change);

@@ -197,12 +197,25 @@ bool Linearization::factor(solid::Tangent kind, Wanted wanted, std::string& fail
   if (!solids_factored(failed)) return false;
   factor_border();
   if (wanted == Wanted::any || kind == solid::Tangent::definite || negative_ == 0) return true;
-  if (conservative() && negative_ + factor_.inertia().negative <= context_->model.rows) return true;
+  if (conservative() && loose() <= 0) return true;
   rotated_ = true;
   beside([&](std::size_t i, StageTimes& own) { factor_solid(i, solid::Tangent::definite, own); }, [](StageTimes&) {});
   if (!solids_factored(failed)) return false;
   factor_border();
   return true;
+}
+
+int Linearization::loose() {
+  const int loose = negative_ + factor_.inertia().negative - context_->model.rows;
+  if (loose <= 0 || !ContactForces::wanted(context_->model, contacts_)) return loose;
+  const Clock clock(times_->contact);
+  prepare_contacts();
+  return loose - contact_forces_.held(contacts_);
+}
+
+void Linearization::prepare_contacts() {
+  if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);
+  contacts_ready_ = true;
 }
 
 void Linearization::factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times) {
@@ -319,8 +332,7 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
     double spent = 0.0;
     {
       const Clock clock(spent);
-      if (!contacts_ready_) contact_forces_.prepare(*context_, *iterate_, contacts_, reduced_, free_, factor_);
-      contacts_ready_ = true;
+      prepare_contacts();
       contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces);
     }
     times_->contact += spent;

@@ -135,6 +135,9 @@ class Linearization {
   void factor_solid(std::size_t number, solid::Tangent kind, StageTimes& times);
   bool solids_factored(std::string& failed);
   void factor_border();
+  /// How many directions neither rows nor contacts hold in which the tangent is negative.
+  int loose();
+  void prepare_contacts();
   void push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side);
   /// What comes after volumes have been pushed.
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,

@@ -241,6 +241,10 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     reject(step ? "time.step" : "time.duration", text(step ? scene.time.step : scene.time.duration) + " s",
            "makes more than 1e9 steps of " + text(scene.time.step) + " s", "shorten the run or lengthen time.step");
   }
+  if (scene.time.smallest > scene.time.step ||
+      (scene.time.smallest > 0.0 && scene.time.smallest < 1e-6 * scene.time.step))
+    reject("time.smallest", text(scene.time.smallest) + " s", "must be between a millionth of the step and the step",
+           "leave it out for 1e-4 of the step");
   const double steps = scene.time.duration / scene.time.step;
   const bool grid = scene.analysis == Analysis::dynamic || scene.analysis == Analysis::quasi_static;
   if (grid && steps > 0.0 && steps < 1.0 - 1e-6) {

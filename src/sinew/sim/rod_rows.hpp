@@ -50,6 +50,13 @@ Eigen::VectorXd strain_levers(const rod::Rod& rod);
 /// Axes of what holds a tie, at an iterate, as columns `TieModel::length` long.
 rod::Mat3 holder_axes(const StepContext& context, const State& iterate, const TieModel& tie);
 
+/// The row that holds a turn about an axis of a tie: `sign` times the holder's axis `held` by the rod's axis `carried`.
+struct HeldTurn {
+  int carried = 0, held = 0;
+  double sign = 1.0;
+};
+HeldTurn held_turn(const TieModel& tie, int about);
+
 /// Rows of ties in which a rod is held, or holds.
 void add_ties(RodRows& rod);
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/inverse.hpp"
 #include "sinew/sim/modal.hpp"
@@ -34,19 +35,31 @@ StepReport taken(StepResult result, State& state) {
   return report;
 }
 
-/// Where a state is within its step of the grid, which has kParts parts.
-constexpr int kParts = 1 << kHalvings;
+/// Where a state is within its step of the grid, which has 2^most parts.
 struct PlaceInStep {
+  int most = 0;
   int parts = 0;     ///< that it has behind it
   double off = 0.0;  ///< [s] beyond that; rounding of the time is none
-  int halvings() const { return parts == 0 ? 0 : kHalvings - std::countr_zero(static_cast<unsigned>(parts)); }
+  int all() const { return 1 << most; }
+  /// Fewest of a part that begins here at a multiple of itself.
+  int halvings() const { return parts == 0 ? 0 : most - std::countr_zero(static_cast<unsigned>(parts)); }
 };
 
-PlaceInStep place_in_step(double h, double done) {
-  const double part = std::ldexp(h, -kHalvings);
-  const int parts = static_cast<int>(std::clamp(std::round(done / part), 0.0, kParts - 1.0));
-  const double off = done - parts * part;
-  return {parts, std::abs(off) < 1e-3 * part ? 0.0 : off};
+PlaceInStep place_in_step(const Scene& scene, double done) {
+  PlaceInStep place{most_halvings(scene)};
+  const double part = std::ldexp(scene.time.step, -place.most);
+  place.parts = static_cast<int>(std::clamp(std::round(done / part), 0.0, place.all() - 1.0));
+  const double off = done - place.parts * part;
+  if (!(std::abs(off) < 1e-3 * part)) place.off = off;
+  return place;
+}
+
+/// Iterations of Newton in a step of the grid, in multiples of `newton.limit`, after which no shorter part is tried.
+constexpr int kMostOfStep = 128;
+
+/// Whether a part of a step that was made is no reason against one of twice its length.
+bool was_easy(const StepReport& report, bool at_once, int limit) {
+  return at_once && report.newton <= std::max(limit / 3, 2);
 }
 
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
@@ -55,19 +68,21 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const bool equilibrium = model.scene.analysis == Analysis::quasi_static && !step_rules(model, effort).fixed;
   const double h = model.scene.time.step;
   const double from = static_cast<double>(state.grid) * h, to = static_cast<double>(state.grid + 1) * h;
-  const PlaceInStep place = place_in_step(h, state.time - from);
-  const double left = std::ldexp(h * (kParts - place.parts), -kHalvings) - place.off;
+  const PlaceInStep place = place_in_step(model.scene, state.time - from);
+  const double left = std::ldexp(h * (place.all() - place.parts), -place.most) - place.off;
   Command& command = workspace.memory().command;
   const bool inverse = !model.effectors.empty() && !told.forward;
+  const int first = std::max(place.halvings(), std::min(state.halvings, place.most));
   // With contacts an equilibrium has been looked for along parts of the step already.
-  const int last = equilibrium && !inverse && !model.pairs.empty() ? place.halvings() : kHalvings;
+  const int last = equilibrium && !inverse && !model.pairs.empty() ? first : place.most;
   Goal goal;
   StepReport earlier;
-  for (int halvings = place.halvings(); halvings <= last; ++halvings) {
+  int spent = state.spent;
+  for (int halvings = first; halvings <= last; ++halvings) {
     StepReport report;
-    const int end = place.parts + (kParts >> halvings);
-    const bool lands = end == kParts;
-    const double time = lands ? to : from + std::ldexp(h * end, -kHalvings);
+    const int end = place.parts + (place.all() >> halvings);
+    const bool lands = end == place.all();
+    const double time = lands ? to : from + std::ldexp(h * end, -place.most);
     const double part = lands ? left : std::ldexp(h, -halvings) - place.off;
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
     if (told.command)
@@ -94,14 +109,31 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     if (accepted(report.status)) {
       state.time = time;
       if (lands) ++state.grid;
+      state.halvings =
+          halvings - (halvings > 0 && was_easy(report, halvings == first, model.scene.newton.limit) ? 1 : 0);
       return report;
     }
     earlier = std::move(report);
+    if (spent > kMostOfStep * model.scene.newton.limit) {
+      const std::string far = three_digits(100.0 * (state.time - from) / h);
+      earlier.detail += (earlier.detail.empty() ? "" : "; ") + ("it came as far as " + far) + " % of the step in " +
+                        std::to_string(spent) + " iterations";
+      break;
+    }
   }
   return earlier;
 }
 
 }  // namespace
+
+int most_halvings(const Scene& scene) {
+  constexpr double kOfStep = 1e-4, kOfLinearised = 1.0 / 64.0;
+  const Time& time = scene.time;
+  const double part = time.smallest > 0.0           ? time.smallest / time.step
+                      : scene.newton.iterations > 0 ? kOfLinearised
+                                                    : kOfStep;
+  return std::max(0, static_cast<int>(std::floor(-std::log2(part) + 1e-9)));
+}
 
 StepReport advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
   double seconds = 0.0;

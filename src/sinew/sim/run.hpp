@@ -8,9 +8,10 @@
 
 namespace sinew {
 
-/// A step that does not converge is tried again with half the time, this many times at most. Parts of a step begin at
-/// multiples of themselves: they grow again by doubling, and what has just failed is not tried again at once.
-constexpr int kHalvings = 6;
+/// A step that does not converge is tried again with half the time, this many times at most: down to `Time::smallest`.
+/// Parts of a step begin at multiples of themselves. The next one is as long as the last that went (`State::halvings`),
+/// or twice as long after one that was easy.
+int most_halvings(const Scene& scene);
 
 /// What a controller says instead of the scene, for the next point of the time grid; null: the scene's own, and what
 /// is driven from outside stays as it is.

@@ -442,6 +442,7 @@ enum class Analysis { dynamic, quasi_static, statics, modal };
 struct Time {
   double step = 0.01;     ///< [s] > 0
   double duration = 1.0;  ///< [s] >= 0
+  double smallest = 0.0;  ///< [s] part of a step below which none is tried; 0: 1e-4 of it, a 64th of `newton: n`
 };
 
 /// How a step is solved.

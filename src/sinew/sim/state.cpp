@@ -152,7 +152,8 @@ bool finite(const State& state) {
 }
 
 std::vector<double> pack(const State& state) {
-  std::vector<double> numbers{static_cast<double>(state.grid), static_cast<double>(state.contacts.size())};
+  std::vector<double> numbers{static_cast<double>(state.grid), static_cast<double>(state.contacts.size()),
+                              static_cast<double>(state.halvings), static_cast<double>(state.spent)};
   for (const PointState& point : state.points) numbers.push_back(point.on ? 1.0 : 0.0);
   numbers.push_back(state.path.stable ? 1.0 : 0.0);
   each_number(state, [&numbers](double value) { numbers.push_back(value); });
@@ -172,11 +173,14 @@ State unpack(const Model& model, const std::vector<double>& numbers) {
   if (numbers.size() < plain || more % kContactNumbers != 0 || numbers[1] != static_cast<double>(contacts))
     throw std::invalid_argument("the recorded state does not belong to this model");
   if (!std::all_of(numbers.begin(), numbers.end(), [](double value) { return std::isfinite(value); }) ||
-      !(numbers[0] >= 0.0 && numbers[0] < 0x1p53))
+      !(numbers[0] >= 0.0 && numbers[0] < 0x1p53 && numbers[2] >= 0.0 && numbers[2] < 64.0 && numbers[3] >= 0.0 &&
+        numbers[3] < 0x1p31))
     throw std::invalid_argument("the recorded state is none: its numbers are not finite, or it has no place in time");
   std::size_t at = 0;
   state.grid = static_cast<long>(numbers[at++]);
   state.contacts.resize(static_cast<std::size_t>(numbers[at++]));
+  state.halvings = static_cast<int>(numbers[at++]);
+  state.spent = static_cast<int>(numbers[at++]);
   for (PointState& point : state.points) point.on = numbers[at++] != 0.0;
   state.path.stable = numbers[at++] != 0.0;
   each_number(state, [&](double& value) { value = numbers[at++]; });

@@ -80,6 +80,8 @@ struct PathState {
 struct State {
   long grid = 0;      ///< steps of the scene's time grid that are behind it
   double time = 0.0;  ///< [s]; of a modal analysis the number of the mode
+  int halvings = 0;   ///< of the scene's step, with which the next part of it is to be tried
+  int spent = 0;      ///< iterations of Newton in the part of a step of the grid that is behind it
   std::vector<SolidState> solids;
   std::vector<RodState> rods;
   std::vector<CableState> cables;
@@ -102,7 +104,7 @@ bool finite(const State& state);
 
 /// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
 /// refused.
-inline constexpr std::uint64_t kStateLayout = 6;
+inline constexpr std::uint64_t kStateLayout = 7;
 /// The state as plain numbers in a fixed order, contacts at the end, and back. unpack throws std::invalid_argument if
 /// their number, or a contact's pair, is not this model's.
 std::vector<double> pack(const State& state);

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/signals.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
@@ -23,7 +25,7 @@ constexpr double kBehindTheStart = -0.05, kMostSteps = 3000;
 constexpr int kMostDetours = 200;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 /// Of its load, brought on by parts where contacts make kinks in a path.
-constexpr double kSmallestPart = 1.0 / 256.0;
+constexpr double kSmallestPart = 1.0 / 64.0, kSettledPart = 1.0 / 16.0;
 /// Iterations of a quasi-static step, in multiples of `newton.limit`, after which no further part of it is tried.
 constexpr int kMaxIterationsFactor = 64;
 
@@ -69,6 +71,120 @@ NewtonRules whole_steps(const Model& model) {
 void add_effort(const StepReport& part, StepReport& whole) {
   whole.newton += part.newton;
   whole.times += part.times;
+}
+
+/// Takes the motion from a state.
+void stop(State& state) {
+  for (SolidState& own : state.solids) own.v.setZero();
+  for (RodState& own : state.rods) own.velocity.setZero();
+  for (rigid::Motion& own : state.bodies) {
+    own.v.setZero();
+    own.w.setZero();
+  }
+}
+
+// Pseudo-transient continuation (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35, 1998). Implicit Euler's steps of
+// length tau, each from rest,
+//     M (x - x_k) / tau^2 + D (x - x_k) / tau + r(x) = 0,
+// go down the potential, however far, where Newton's from x_k would go anywhere. tau grows as they go well, until
+// Newton's method without M and D converges from where they have come.
+/// The equilibrium at t that a state moves to; not accepted where none is found.
+Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, int most_iterations) {
+  constexpr double kFirst = 0.1, kLeast = 1e-6;  // of the scene's step
+  constexpr int kEasy = 4;
+  const Model& model = memory.context.model;
+  const double h = model.scene.time.step;
+  Reached reached{{from, t}, {}};
+  reached.report.status = Status::max_iterations;
+  StepReport spent;
+  State state = from;
+  bool arrived = false;  // frames and loads are there
+  const auto make = [&](double rate, double tau, int limit) {
+    const ContextAt at = [&](double, StepContext& context) {
+      context.set(state, between(ramp.from, ramp.to, t), arrived ? 0.0 : ramp.time(t) - state.time);
+      if (arrived) context.h = tau;
+      context.rate = rate;
+      context.gravity = ramp.gravity_from + t * (ramp.gravity_to - ramp.gravity_from);
+    };
+    at(t, memory.context);
+    NewtonRules rules{limit, false, Linearization::Wanted::descent};
+    rules.evaluation = rate > 0.0 ? Evaluation::motion : Evaluation::full;
+    StepReport report = look_until_found(memory, alarm_distance(memory.context), [&] {
+      at(t, memory.context);
+      first_guess(memory.context, reached.at.state);
+      follow_points(memory.context, reached.at.state, memory.here);
+      find_contacts(memory.context, reached.at.state, memory.here.contacts(), memory.alarm);
+      return newton(at, memory, rules, reached.at);
+    });
+    add_effort(report, spent);
+    return report;
+  };
+  double most = INFINITY;  // [s] that has not failed lately
+  int made = 0, next_look = 1;
+  for (double tau = kFirst * h; tau > kLeast * h && spent.newton < most_iterations;) {
+    StepReport report = make(1.0 / tau, tau, model.scene.newton.limit);
+    if (!accepted(report.status)) {
+      reached.report = report;
+      most = 0.5 * tau;
+      tau *= 0.25;
+      continue;
+    }
+    state = reached.at.state;
+    state.time = ramp.time(t);
+    stop(state);
+    arrived = true;
+    ++made;
+    tau = std::min(tau * std::clamp(2.0 * kEasy / std::max(report.newton, 1), 0.5, 3.0), most);
+    most *= 1.2;
+    if (report.newton > kEasy || made < next_look) continue;
+    next_look = 2 * made;
+    reached.report = make(0.0, h, std::min(model.scene.newton.limit, kMostIterations));
+    if (accepted(reached.report.status)) break;
+  }
+  reached.at.state.time = ramp.time(t);
+  reached.report.newton = spent.newton;
+  reached.report.times = spent.times;
+  return reached;
+}
+
+/// What has moved most from one state to another, and how far [m].
+struct Moved {
+  std::string name;
+  double far = 0.0;
+};
+Moved moved_most(const Model& model, const State& from, const State& to) {
+  Moved most;
+  const auto take = [&most](const std::string& name, const auto& a, const auto& b) {
+    const double far = a.cols() > 0 ? (b - a).colwise().norm().maxCoeff() : 0.0;
+    if (far > most.far) most = {name, far};
+  };
+  for (std::size_t i = 0; i < to.solids.size(); ++i)
+    take("solids." + model.solids[i].name, from.solids[i].x, to.solids[i].x);
+  for (std::size_t i = 0; i < to.rods.size(); ++i)
+    take("rods." + model.rods[i].name, from.rods[i].masses, to.rods[i].masses);
+  for (std::size_t i = 0; i < to.bodies.size(); ++i)
+    take("bodies." + model.bodies[i].name, from.bodies[i].p, to.bodies[i].p);
+  return most;
+}
+
+/// Warning `snapped` where more energy was set free on the way between two equilibria than steps of a load leave
+/// undecided.
+std::optional<Warning> snapped(const Model& model, const State& from, const State& to) {
+  constexpr double kFree = 1e-3;  // of the elastic energy
+  const EnergyBalance before = energy_balance(model, from), after = energy_balance(model, to);
+  const double free = to.energies.work - from.energies.work - (after.total() - before.total());
+  const double size = std::max(before.elastic, after.elastic);
+  if (!(free > kFree * size)) return {};
+  const Moved most = moved_most(model, from, to);
+  return Warning{.code = "snapped",
+                 .where = most.name,
+                 .message = "no equilibrium goes on from the one before: it lets go, moves by " +
+                            three_digits(1e3 * most.far) + " mm and sets " + three_digits(free) + " J free",
+                 .remedy = "see how it moves with `analysis: dynamic`",
+                 .time = to.time,
+                 .value = free / size,
+                 .limit = kFree,
+                 .steps = 1};
 }
 
 /// One step along a path; its arc and what the next one needs are in the state's `path`. On failure `at` is where it
@@ -218,6 +334,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   rules.limit = std::min(rules.limit, kMostIterations);
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
+  std::vector<Warning> snaps;
   if (!sound(end)) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
@@ -233,7 +350,12 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       add_effort(next.report, spent);
       if (!sound(next)) {
         part *= 0.5;
-        continue;
+        if (part >= kSmallestPart) continue;
+        part = kSettledPart;
+        next = settle(memory, ramp, on.state, std::min(on.t + part, 1.0), iteration_limit - spent.newton);
+        add_effort(next.report, spent);
+        if (!sound(next)) break;
+        if (std::optional<Warning> snap = snapped(model, on.state, next.at.state)) snaps.push_back(std::move(*snap));
       }
       on = next.at;
       part *= 2.0;
@@ -254,6 +376,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   }
   end.report.newton = spent.newton;
   end.report.times = spent.times;
+  end.report.warnings.insert(end.report.warnings.end(), snaps.begin(), snaps.end());
   if (!accepted(end.report.status)) return {state, end.report};
   end.at.state.path = {};
   return {std::move(end.at.state), end.report};

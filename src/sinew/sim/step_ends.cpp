@@ -117,15 +117,14 @@ constexpr double kGuide = 0.01;
 
 bool turned_over(const StepContext& context, const State& state) {
   for (const TieModel& tie : context.model.ties) {
-    if (tie.about.empty()) continue;
+    if (tie.about.size() < 2) continue;
     const auto shape =
         rod::configure(context.model.rods[tie.rod].rod, base_of(context, state, tie.rod), state.rods[tie.rod].q);
     const rod::Mat3 axes = holder_axes(context, state, tie);
     const rod::Mat3 own = rod::branch(shape, tie.s).R * tie.own_axes;
     for (const int a : tie.about) {
-      for (const int k : {(a + 1) % 3, (a + 2) % 3}) {
-        if (!(axes.col(k).dot(own.col(k)) > 0.0)) return true;
-      }
+      const int k = held_turn(tie, a).carried;
+      if (!(axes.col(k).dot(own.col(k)) > 0.0)) return true;
     }
   }
   return false;

@@ -23,7 +23,7 @@ void finish(const StepContext& context, State& next, Linearization& here);
 /// Reactions and internal forces, evaluated there.
 void write_forces(const Linearization& here, State& next);
 
-/// A tie about an axis whose rows hold, but half a turn off: the step was too long for it.
+/// A tie about two or three axes whose rows hold, but half a turn off: the step was too long for it.
 bool turned_over(const StepContext& context, const State& state);
 
 /// A rod whose base has turned by more than a right angle in a dynamic step; null if none has. Velocities are the

@@ -3,9 +3,14 @@
 // With y the point held and d_a its axes, `length` long (of a body unknowns that rows hold to it, else given), X the
 // rod's point, and e_b the holder's axes as the rod's cross-section carries them:
 //     along a:   c = d_a . (y - X) / length
-//     about a:   c = d_c . R e_b,             (a, b, c) in cyclic order
+//     about a:   c = d_c . R e_b  or  c = - d_b . R e_c,             (a, b, c) in cyclic order
+//
+// Both hold the turn about d_a where the axes agree. Of two that are held, both say where the third axis k goes (b or c
+// is k), R e_k = d_k, which they do however far the rod has turned about it; with others they would become the same row
+// at 90 degrees. One alone is a universal joint with the axes d_c and e_b, at right angles whatever it turns.
 // All curvature is between the rod and (y, d): none reaches into the nodes of a solid.
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "sinew/sim/rod_rows.hpp"
 
@@ -29,6 +34,16 @@ Holder holder(const StepContext& context, const State& iterate, const TieModel& 
   if (tie.directors) own.d = Eigen::Map<const rod::Mat3>(iterate.followed.data() + at + 3);
   return own;
 }
+
+}  // namespace
+
+HeldTurn held_turn(const TieModel& tie, int about) {
+  const int b = (about + 1) % 3, c = (about + 2) % 3;
+  const bool free_c = tie.about.size() == 2 && std::find(tie.about.begin(), tie.about.end(), c) == tie.about.end();
+  return free_c ? HeldTurn{c, b, -1.0} : HeldTurn{b, c, 1.0};
+}
+
+namespace {
 
 /// The rows of a tie, seen from the rod that is held.
 void add_held(RodRows& rod, const TieModel& tie) {
@@ -67,18 +82,18 @@ void add_held(RodRows& rod, const TieModel& tie) {
     ++row;
   }
   for (const int a : tie.about) {
-    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    const HeldTurn turn = held_turn(tie, a);
     const double lambda = rod.iterate().lambda[row];
-    const Vec3 offset = l * tie.own_axes.col(b), direction = held.d.col(c) / l;
-    const Vec3 carried = point.R * tie.own_axes.col(b);
-    count(held.d.col(c).dot(carried));
-    // The vector R e_b as a difference of two material points.
+    const Vec3 axis = turn.sign * tie.own_axes.col(turn.carried), carried = point.R * axis;
+    const Vec3 offset = l * axis, direction = held.d.col(turn.held) / l;
+    count(held.d.col(turn.held).dot(carried));
+    // The vector that the rod carries as a difference of two material points.
     rod.load({tie.s, offset, -lambda * direction});
     rod.load({tie.s, Vec3::Zero(), lambda * direction});
     rod.attach(rod.row(row), point, offset, -direction);
     rod.attach(rod.row(row), point, Vec3::Zero(), direction);
     if (tie.directors) {
-      const int d = director(c);
+      const int d = director(turn.held);
       problem.G.add(row, d, -carried.transpose());
       problem.r.segment<3>(d) -= lambda * carried;
       for (int i = 0; i < 3; ++i) {

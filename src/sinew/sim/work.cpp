@@ -6,6 +6,7 @@
 #include "sinew/lie/rotation.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/rod_rows.hpp"
 #include "sinew/sim/solid_loads.hpp"
 
 namespace sinew {
@@ -88,12 +89,18 @@ Wrench held_by_base(const rod::Configuration& shape, const RodState& state) {
   return {R * -state.internal.block<3, 1>(4, first), R * -state.internal.block<3, 1>(1, first)};
 }
 
-/// With which a frame holds a rod by an attachment, whose rows are along and about its axes.
-Wrench held_by_attachment(const TieModel& tie, const rod::Mat3& axes, const Eigen::VectorXd& lambda) {
+/// With which a frame holds a rod by an attachment, whose rows are along and about its axes; the rod's cross-section
+/// there is turned by R.
+Wrench held_by_attachment(const TieModel& tie, const rod::Mat3& axes, const rod::Mat3& R,
+                          const Eigen::VectorXd& lambda) {
   Wrench own;
   int row = tie.row;
   for (const int a : tie.along) own.force -= lambda[row++] * axes.col(a);
-  for (const int a : tie.about) own.moment += lambda[row++] * tie.length * axes.col(a);
+  for (const int a : tie.about) {
+    const HeldTurn turn = held_turn(tie, a);
+    const Vec3 carried = turn.sign * R * tie.own_axes.col(turn.carried);
+    own.moment += lambda[row++] * tie.length * carried.cross(axes.col(turn.held));
+  }
   return own;
 }
 
@@ -131,8 +138,15 @@ Work work_of_frames(const StepContext& context, const State& next, const std::ve
     if (tie.body() || !moves(tie.frame)) continue;
     const Placement before = compose(moved(model, context.start, tie.frame), tie.holder),
                     after = compose(context.moved(tie.frame), tie.holder);
-    add(held_by_attachment(tie, before.R, context.start.lambda), held_by_attachment(tie, after.R, next.lambda),
-        tie.frame, before.p);
+    const rod::Rod& rod = model.rods[tie.rod].rod;
+    const auto turned = [&](const rod::Base& base, const RodState& state) {
+      return rod::branch(rod::configure(rod, base, state.q), tie.s).R;
+    };
+    const RodState& start = context.start.rods[tie.rod];
+    const rod::Mat3 from = turned({rod_base(model, context.start, tie.rod), start.turned}, start),
+                    to = turned(base_of(context, next, tie.rod), next.rods[tie.rod]);
+    add(held_by_attachment(tie, before.R, from, context.start.lambda),
+        held_by_attachment(tie, after.R, to, next.lambda), tie.frame, before.p);
   }
   // What an obstacle presses with, where it presses: at the start of its way there, or at the end.
   const auto pressed = [&](const ContactState& contact, const Vec3& force, const Vec3& point, bool at_end) {

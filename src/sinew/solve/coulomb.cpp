@@ -15,9 +15,14 @@ struct Stiffness {
   double normal = 0.0, tangent = 0.0;  ///< [N/m]
 };
 Stiffness stiffness(const CoulombProblem& problem, int contact) {
-  const auto k = 3 * contact;
-  const auto d = problem.D.diagonal().segment<3>(k);
-  return {1.0 / std::max(d[0], 1e-300), 2.0 / std::max(d[1] + d[2], 1e-300)};
+  const OwnCompliance own = own_compliance(problem, contact);
+  return {1.0 / std::max(own.normal, 1e-300), 1.0 / std::max(own.tangent, 1e-300)};
+}
+
+/// Whether some forces move contacts against themselves, as where bodies would buckle but for their contacts.
+bool indefinite(const CoulombProblem& problem) {
+  const Eigen::VectorXd& pivots = Eigen::LDLT<Eigen::MatrixXd>(problem.D).vectorD();
+  return pivots.minCoeff() < -1e-9 * pivots.maxCoeff();
 }
 
 /// The nearest point of a disk.
@@ -27,6 +32,11 @@ Vector2d onto_disk(const Vector2d& t, double radius) {
 }
 
 }  // namespace
+
+OwnCompliance own_compliance(const CoulombProblem& problem, int contact) {
+  const auto d = problem.D.diagonal().segment<3>(3 * contact);
+  return {std::abs(d[0]), 0.5 * (std::abs(d[1]) + std::abs(d[2]))};
+}
 
 double CoulombResidual::largest() const { return std::max({complementarity, cone, dissipation}); }
 
@@ -347,6 +357,13 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
   constexpr double kYields[] = {1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-2, 1e-5};
   int sweeps = 4;
   report.solved = report.residual.largest() <= tolerance;
+  // Sweeps look at one contact after the other and let go of what only all of them hold: there the forces that there
+  // are tell what is closed.
+  if (!report.solved && indefinite(problem)) {
+    yield_ = 0.0;
+    newton(problem, tolerance, lambda, report.newton);
+    report.solved = keep();
+  }
   for (const double yield : kYields) {
     if (report.solved) break;
     lambda = best_;

@@ -13,11 +13,18 @@ namespace sinew::solve {
 ///     0 <= lambda_n,  0 <= u_n,  lambda_n u_n = 0                                    (Signorini)
 ///     |lambda_t| <= mu lambda_n,  lambda_t = -mu lambda_n u_t / |u_t| where u_t != 0   (Coulomb)
 struct CoulombProblem {
-  Eigen::MatrixXd D;   ///< [m/N] 3n x 3n, symmetric, positive semidefinite
+  Eigen::MatrixXd D;   ///< [m/N] 3n x 3n, symmetric; positive semidefinite but where contacts hold what would buckle
   Eigen::VectorXd b;   ///< [m] 3n: u without forces at the contacts
   Eigen::VectorXd mu;  ///< n, >= 0
   int contacts() const { return static_cast<int>(mu.size()); }
 };
+
+/// What a contact yields to its own forces, along the normal and the tangents: the size of D's own entries. Where what
+/// touches would buckle but for its contacts, D is indefinite, and they may be negative.
+struct OwnCompliance {
+  double normal = 0.0, tangent = 0.0;  ///< [m/N] >= 0
+};
+OwnCompliance own_compliance(const CoulombProblem& problem, int contact);
 
 /// How far forces are from solving a problem. Displacements u are told as the forces that would take them away at their
 /// own contact, u / D_ii, and all three are relative to the largest force there is, b / D_ii included.

@@ -1,0 +1,73 @@
+// Bodies that let go: an equilibrium ends, and the run follows them to the next one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "support/recorded_run.hpp"
+
+namespace sinew::test {
+namespace {
+
+RecordedRun arch(const std::string& name, const std::vector<std::string>& changes = {}) {
+  return run_file(std::filesystem::path(SINEW_SOURCE_DIR) / "tests/validation/faults" / (name + ".yaml"), changes);
+}
+
+/// Where a force that grows leaves the path of equilibria, where on it the force is as large again, and the energy
+/// between the two.
+struct Limit {
+  double force = 0.0, from = 0.0, to = 0.0, free = 0.0;
+};
+Limit limit_of(const RecordedRun& pressed) {
+  const std::vector<double> z = pressed.signal("mid.z"), energy = pressed.signal("energy.elastic");
+  const auto force = [&](std::size_t i) { return -(energy[i + 1] - energy[i - 1]) / (z[i + 1] - z[i - 1]); };
+  std::size_t at = 1;
+  while (force(at + 1) >= force(at)) ++at;
+  std::size_t far = at + 1;
+  while (force(far + 1) < force(far)) ++far;  // down to the least, and up again
+  while (force(far) < force(at)) ++far;
+  return {force(at), z[at], z[far], energy[at] - energy[far] + force(at) * (z[at] - z[far])};
+}
+
+TEST(Snap, an_arch_goes_over_to_the_other_side_and_says_what_that_sets_free) {
+  const RecordedRun pressed = arch("arch_pressed");
+  ASSERT_TRUE(pressed.done()) << pressed.why();
+  const Limit limit = limit_of(pressed);
+  const double load = 0.04;  // [N] at t = 1 s
+  for (const double step : {0.02, 0.01, 0.005}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = arch("arch_snaps", {"time.step=" + std::to_string(step)});
+    ASSERT_TRUE(run.done()) << run.why();
+    const Warning* snapped = run.warning("snapped");
+    ASSERT_TRUE(snapped);
+    EXPECT_EQ(snapped->where, "rods.arch");
+    EXPECT_GT(snapped->time, limit.force / load);
+    EXPECT_LT(snapped->time, limit.force / load + step);
+    const std::vector<double> z = run.signal("mid.z"), dissipated = run.signal("energy.dissipated");
+    const auto after =
+        static_cast<std::size_t>(std::find_if(z.begin(), z.end(), [](double own) { return own < 0.0; }) - z.begin());
+    EXPECT_NEAR(z[after - 1], limit.from, 0.8e-3);  // (it falls ever faster towards the limit)
+    EXPECT_NEAR(z[after], limit.to, 0.15e-3);       // at up to one step's load more
+    EXPECT_NEAR(dissipated.back(), limit.free, 0.02 * limit.free);
+  }
+}
+
+// The same by motion that is damped, pressed slowly enough.
+TEST(Snap, the_energy_set_free_is_what_damped_motion_dissipates) {
+  const RecordedRun run = arch("arch_snaps", {"analysis=dynamic", "time.step=50 ms", "time.duration=200 s",
+                                              "rods.arch.material.damping=5 ms",
+                                              "loads.push.factor={times: [0, 200], values: [0, 0.04]}"}),
+                    rest = arch("arch_snaps");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_NEAR(rest.last("energy.dissipated"), run.last("energy.dissipated"), 0.03 * run.last("energy.dissipated"));
+  EXPECT_NEAR(rest.last("mid.z"), run.last("mid.z"), 1e-5);
+}
+
+TEST(Snap, nothing_is_told_where_nothing_lets_go) {
+  const RecordedRun run = arch("arch_snaps", {"loads.push.factor={times: [0, 1], values: [0, 0.02]}"});
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_EQ(run.warning("snapped"), nullptr);
+}
+
+}  // namespace
+}  // namespace sinew::test
