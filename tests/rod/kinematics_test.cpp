@@ -114,12 +114,12 @@ TEST_P(EveryBasis, weights_give_the_mass_matrix) {
 
 TEST_P(EveryBasis, stiffnesses_give_the_exact_tangent_of_springs) {
   // Springs from where the points are: forces S (X - X_0) grow from f.
-  std::vector<Mat3> stiffness;
+  std::vector<Mat6> stiffness;  // by turns, of which these springs feel none, and motions
   for (double s : kAbscissae) {
     Mat3 S = Vec3(1.0 + s, -0.5, 2.0 * s).asDiagonal();
     S(0, 1) = S(1, 0) = 0.3 - s;
     S(1, 2) = S(2, 1) = 0.7 * s;
-    stiffness.push_back(S);
+    stiffness.emplace_back(Mat6::Zero()).bottomRightCorner<3, 3>() = S;
   }
   const Configuration start = at(q);
   const auto sprung = [&](const Configuration& shape) {
@@ -127,7 +127,8 @@ TEST_P(EveryBasis, stiffnesses_give_the_exact_tangent_of_springs) {
     for (std::size_t i = 0; i < std::size(kAbscissae); ++i) {
       const double s = kAbscissae[i];
       PointLoad load{s, kOffset, Vec3(1.0 + s, -0.5, 0.3 * s)};
-      load.force += stiffness[i] * (position(shape, s, kOffset) - position(start, s, kOffset));
+      load.force +=
+          stiffness[i].bottomRightCorner<3, 3>() * (position(shape, s, kOffset) - position(start, s, kOffset));
       load.stiffness = &stiffness[i];
       loads.push_back(load);
     }

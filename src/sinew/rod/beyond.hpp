@@ -25,8 +25,8 @@ class Beyond {
       moment_ += load.moment;
     }
     if (load.stiffness) {
-      Eigen::Matrix<double, 3, 6> J;  // of x by a twist
-      J << -lie::hat(x), Mat3::Identity();
+      Mat6 J = Mat6::Identity();  // how x turns and moves, by a twist
+      J.bottomLeftCorner<3, 3>() = -lie::hat(x);
       add_springs(J.transpose() * *load.stiffness * J);
     }
   }

@@ -20,7 +20,7 @@ struct PointLoad {
   bool follower = false;
   bool spread = false;  ///< one of many that stand for a load all along the rod: internal forces do not jump there
   int slide = -1;       ///< number among the slides: the abscissa is an unknown, too
-  const Mat3* stiffness = nullptr;     ///< [N/m] world axes, symmetric, beside the weight
+  const Mat6* stiffness = nullptr;     ///< by how it turns and moves, world axes, symmetric, beside the weight
   std::optional<CentrePoint> at = {};  ///< the centreline at s, where it is known already
 };
 

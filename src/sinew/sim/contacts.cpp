@@ -349,10 +349,16 @@ void evaluate_contacts(const StepContext& context, const State& iterate, Contact
     touch.frame = frame_of(n);
     touch.force = turned(own, n);
     touch.stiffness.resize(0, 0);
-    touch.of_rod_point.setZero();
-    const bool on_rod = own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle;
-    if (on_rod && turns(own, a, b) && touch.force.dot(n) > 0.0)
-      touch.of_rod_point = contact_stiffness(touch, a, b, room.facings[i]).topLeftCorner<3, 3>();
+    touch.of_rod.setZero();
+    const bool of_a = own.a.on.kind == Kind::rod && own.b.on.kind == Kind::obstacle,
+               of_b = own.b.on.kind == Kind::rod && own.a.on.kind == Kind::obstacle;
+    if ((of_a || of_b) && touch.force.dot(n) > 0.0) {
+      if (is_piece_of_rod(own.a, a) || is_piece_of_rod(own.b, b)) {
+        touch.of_rod = -touch.force.dot(n) * curve_gap_hessian(now, own, a, b, touch.nearest);
+      } else if (of_a && turns(own, a, b)) {
+        touch.of_rod.bottomRightCorner<3, 3>() = contact_stiffness(touch, a, b, room.facings[i]).topLeftCorner<3, 3>();
+      }
+    }
     touch.point_a = point_on(own.a, a, touch.nearest.a, feet.a, -n);
     touch.point_b = b.kind == Simplex::Kind::plane ? Vec3(touch.point_a - touch.nearest.gap * n)
                                                    : point_on(own.b, b, touch.nearest.b, feet.b, n);

@@ -20,9 +20,9 @@ struct Touch {
   Vec3 point_a, point_b;      ///< [m] on the two surfaces
   Vec3 force = Vec3::Zero();  ///< [N] on a, turned with the normal since it was set
   Vec3 u = Vec3::Zero();      ///< [m] gap, and slip since the start of the step
-  /// [N/m] what the turning of the normal adds to the tangent, - lambda_n d2gap, of a rod's point on an obstacle, or
-  /// zero.
-  Eigen::Matrix3d of_rod_point = Eigen::Matrix3d::Zero();
+  /// What the turning of the normal adds to the tangent, - lambda_n d2gap, of a rod on an obstacle, by how its point
+  /// turns and moves; or zero.
+  rod::Mat6 of_rod = rod::Mat6::Zero();
   /// The same over the corners of a and then of b where a solid is pressed on (`add_contact_curvature`), or empty.
   contact::GapHessian stiffness;
 };

@@ -51,6 +51,9 @@ WeightRange weight_range(const Moment& now, const ContactSide& side, const Simpl
           std::min(1.0 + kBeyond, (now.rods[side.on.number].rod->length() - begin) / length)};
 }
 
+constexpr double kLiesAlong = 0.3;    ///< of -d . x'' to x'^2, beyond which a rod lies along what it touches
+constexpr double kSideBySide = 1e-3;  ///< of the determinant to that of lines across each other
+
 /// Where two parts are nearest within these ranges, one of them a piece of a rod, from where their chords are. With d =
 /// x_a(s) - x_b(t), s and t the second weights, Newton's method for min |d|^2 / 2:
 ///
@@ -60,8 +63,6 @@ WeightRange weight_range(const Moment& now, const ContactSide& side, const Simpl
 /// False where a rod lies along a drum of about its own curvature and is equally near all along.
 bool nearest_on_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
                        const WeightRange& range_a, const WeightRange& range_b, contact::Nearest& found) {
-  constexpr double kLiesAlong = 0.3;    // of -d . x'' to x'^2
-  constexpr double kSideBySide = 1e-3;  // of the determinant to that of lines across each other
   constexpr int kMostIterations = 20;
   std::array<double, 3>&s = found.a, &t = found.b;
   double s_nearest = s[1], t_nearest = t[1], distance = INFINITY;
@@ -159,6 +160,35 @@ bool refine_place(const Moment& now, const ContactState& own, const Simplex& a, 
   found = on_chords;
   if (!nearest_on_curves(now, own, a, b, {}, {}, found)) found = on_chords;
   return !one_place;
+}
+
+// With y = x_a(s) - x_b(t), d = |y| least over s and t, e = dy/d(s, t) and v, w how the rod's point moves and turns,
+//     d2gap = (P - B^T G^-1 B) / d,    B = e^T dy + d n . de,    G = e^T e + y . d2y/d(s, t)2,
+// where P takes what is along n from dy = +-v, and de = +-w x e of the rod's own line.
+rod::Mat6 curve_gap_hessian(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,
+                            const contact::Nearest& found) {
+  rod::Mat6 H = rod::Mat6::Zero();
+  const double d = found.gap + a.radius + b.radius;
+  if (!(d > 1e-9 * now.model.size)) return H;
+  const Vec3& n = found.normal;
+  const LinePoint first = line_point(now, own.a, a, found.a), second = line_point(now, own.b, b, found.b);
+  const auto bend = [](const LinePoint& own_line) {
+    return own_line.tangent.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(own_line.second / own_line.speed / own_line.speed);
+  };
+  const bool of_a = own.a.on.kind == Kind::rod;
+  Eigen::Matrix2d G;
+  G << 1.0 + d * n.dot(bend(first)), -first.tangent.dot(second.tangent), 0.0, 1.0 - d * n.dot(bend(second));
+  G(1, 0) = G(0, 1);
+  if (std::min(G(0, 0), G(1, 1)) < 1.0 - kLiesAlong) return H;  // its place stays on the chord
+  if (!(G.determinant() > kSideBySide * G(0, 0) * G(1, 1))) return H;
+  Eigen::Matrix<double, 2, 6> B = Eigen::Matrix<double, 2, 6>::Zero();
+  const double sign = of_a ? 1.0 : -1.0;
+  B.row(0).tail<3>() = sign * first.tangent;
+  B.row(1).tail<3>() = -sign * second.tangent;
+  B.row(of_a ? 0 : 1).head<3>() = sign * d * (of_a ? first : second).tangent.cross(n);
+  H.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() - n * n.transpose();
+  H -= B.transpose() * G.inverse() * B;
+  return H / d;
 }
 
 Feet follow_curves(const Moment& now, const ContactState& own, const Simplex& a, const Simplex& b,

@@ -28,4 +28,9 @@ struct Feet {
 Feet follow_curves(const Moment& now, const ContactState& own, const contact::Simplex& a, const contact::Simplex& b,
                    contact::Nearest& found);
 
+/// [1/m] Second derivative of the gap between a rod's piece and an obstacle, by how the rod's cross-section turns about
+/// its foot, and moves there. `found` is where they are nearest on the true curve.
+rod::Mat6 curve_gap_hessian(const Moment& now, const ContactState& own, const contact::Simplex& a,
+                            const contact::Simplex& b, const contact::Nearest& found);
+
 }  // namespace sinew

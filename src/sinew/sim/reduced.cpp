@@ -108,7 +108,7 @@ void add_touches(RodRows& rod, const std::vector<Touch>& touches) {
                            out = section.R.transpose() * (sign * -n * side.local.radius);
                 const bool lone = side.local.corners() == 1;
                 rod::PointLoad pressed{s, lone ? Vec3(Vec3::Zero()) : Vec3(surface - out), -sign * normal};
-                if (lone && !touches[i].of_rod_point.isZero(0.0)) pressed.stiffness = &touches[i].of_rod_point;
+                if (!touches[i].of_rod.isZero(0.0)) pressed.stiffness = &touches[i].of_rod;
                 rod.load(pressed);
                 rod.load({s, surface, -sign * friction});
                 rod.reduced().scale = std::max(rod.reduced().scale, force.norm());

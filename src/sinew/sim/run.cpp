@@ -54,8 +54,9 @@ PlaceInStep place_in_step(const Scene& scene, double done) {
   return place;
 }
 
-/// Iterations of Newton in a step of the grid, in multiples of `newton.limit`, after which no shorter part is tried.
-constexpr int kMostOfStep = 128;
+/// Iterations of Newton, in multiples of `newton.limit`, after which no shorter part of a step is tried, and how many
+/// of them each step of the grid pays back: one that is hard may cost much, not all of a run.
+constexpr int kMostOfStep = 64, kPaidByStep = 8;
 
 /// Whether a part of a step that was made is no reason against one of twice its length.
 bool was_easy(const StepReport& report, bool at_once, int limit) {
@@ -78,6 +79,16 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   Goal goal;
   StepReport earlier;
   int spent = state.spent;
+  const int most = kMostOfStep * model.scene.newton.limit;
+  const auto has_cost = [&](int iterations) {
+    return "it came as far as " + three_digits(100.0 * (state.time - from) / h) + " % of the step in " +
+           std::to_string(iterations) + " iterations";
+  };
+  if (place.parts > 0 && spent > most) {
+    earlier.status = Status::max_iterations;
+    earlier.detail = has_cost(spent);
+    return earlier;
+  }
   for (int halvings = first; halvings <= last; ++halvings) {
     StepReport report;
     const int end = place.parts + (place.all() >> halvings);
@@ -106,18 +117,18 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     report.times += earlier.times;
     report.contact.sweeps += earlier.contact.sweeps;
     report.contact.newton += earlier.contact.newton;
+    spent += report.newton;
     if (accepted(report.status)) {
       state.time = time;
       if (lands) ++state.grid;
+      state.spent = lands ? std::max(0, spent - kPaidByStep * model.scene.newton.limit) : spent;
       state.halvings =
           halvings - (halvings > 0 && was_easy(report, halvings == first, model.scene.newton.limit) ? 1 : 0);
       return report;
     }
     earlier = std::move(report);
-    if (spent > kMostOfStep * model.scene.newton.limit) {
-      const std::string far = three_digits(100.0 * (state.time - from) / h);
-      earlier.detail += (earlier.detail.empty() ? "" : "; ") + ("it came as far as " + far) + " % of the step in " +
-                        std::to_string(spent) + " iterations";
+    if (spent > most) {
+      earlier.detail += (earlier.detail.empty() ? "" : "; ") + has_cost(spent);
       break;
     }
   }

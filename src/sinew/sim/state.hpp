@@ -81,7 +81,7 @@ struct State {
   long grid = 0;      ///< steps of the scene's time grid that are behind it
   double time = 0.0;  ///< [s]; of a modal analysis the number of the mode
   int halvings = 0;   ///< of the scene's step, with which the next part of it is to be tried
-  int spent = 0;      ///< iterations of Newton in the part of a step of the grid that is behind it
+  int spent = 0;      ///< iterations of Newton that steps of the grid have not paid back yet (sim/run.cpp)
   std::vector<SolidState> solids;
   std::vector<RodState> rods;
   std::vector<CableState> cables;
