@@ -78,7 +78,8 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const int last = equilibrium && !inverse && !model.pairs.empty() ? first : place.most;
   Goal goal;
   StepReport earlier;
-  int spent = state.spent;
+  // (Who steers may get a step that is stuck going again.)
+  int spent = told.command || told.goal ? 0 : state.spent;
   const int most = kMostOfStep * model.scene.newton.limit;
   const auto has_cost = [&](int iterations) {
     return "it came as far as " + three_digits(100.0 * (state.time - from) / h) + " % of the step in " +
