@@ -73,6 +73,13 @@ void add_effort(const StepReport& part, StepReport& whole) {
   whole.times += part.times;
 }
 
+/// First guess of the step that Memory::context describes, and the contacts looked for in it.
+void begin(Memory& memory, State& guess) {
+  first_guess(memory.context, guess);
+  follow_points(memory.context, guess, memory.here);
+  find_contacts(memory.context, guess, memory.here.contacts(), memory.alarm);
+}
+
 /// Takes the motion from a state.
 void stop(State& state) {
   for (SolidState& own : state.solids) own.v.setZero();
@@ -111,9 +118,7 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     rules.evaluation = rate > 0.0 ? Evaluation::motion : Evaluation::full;
     StepReport report = look_until_found(memory, alarm_distance(memory.context), [&] {
       at(t, memory.context);
-      first_guess(memory.context, reached.at.state);
-      follow_points(memory.context, reached.at.state, memory.here);
-      find_contacts(memory.context, reached.at.state, memory.here.contacts(), memory.alarm);
+      begin(memory, reached.at.state);
       return newton(at, memory, rules, reached.at);
     });
     add_effort(report, spent);
@@ -312,9 +317,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     along(ramp, from)(t, memory.context);
     Iterate guess;
     guess.t = t;
-    first_guess(memory.context, guess.state);
-    follow_points(memory.context, guess.state, memory.here);
-    find_contacts(memory.context, guess.state, memory.here.contacts(), memory.alarm);
+    begin(memory, guess.state);
     return guess;
   };
   // From `from` to t, contacts found as far away as it takes.

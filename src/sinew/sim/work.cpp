@@ -139,7 +139,8 @@ Work work_of_frames(const StepContext& context, const State& next, const std::ve
     const Placement before = compose(moved(model, context.start, tie.frame), tie.holder),
                     after = compose(context.moved(tie.frame), tie.holder);
     const rod::Rod& rod = model.rods[tie.rod].rod;
-    const auto turned = [&](const rod::Base& base, const RodState& state) {
+    const auto turned = [&](const rod::Base& base, const RodState& state) -> rod::Mat3 {
+      if (tie.about.empty()) return rod::Mat3::Identity();  // its rows are of forces alone
       return rod::branch(rod::configure(rod, base, state.q), tie.s).R;
     };
     const RodState& start = context.start.rods[tie.rod];
