@@ -309,6 +309,61 @@ TEST_F(Inverse, RunsFollowTheirTargets) {
   }
 }
 
+/// A target that jumps further than one step can follow: the run goes on, says where steps fell short, and arrives.
+TEST_F(Inverse, TargetsThatJumpAreFollowedOverSteps) {
+  Scene scene = two_cables();
+  scene.newton.iterations = 0;
+  scene.time = {0.005, 0.2};
+  const Vec3 tip(50 * mm, 5 * mm, 5 * mm);
+  scene.targets[0].at = Track{{0.0}, {tip - 15 * mm * Vec3::UnitY()}};
+  scene.targets[0].weights = {0, 1, 0};
+  Robot robot(scene);
+  int short_of = 0;
+  StepReport failed;
+  const RunEnd end = run(
+      robot.model, robot.state,
+      [&](const State& state, const StepReport& report) {
+        robot.state = state;
+        short_of += report.aim.short_of ? 1 : 0;
+        if (report.aim.short_of) {
+          EXPECT_NE(report.aim.outcome, Outcome::reached);
+          EXPECT_NE(describe(robot.model, report.aim).find("goes no further"), std::string::npos);
+        }
+        return true;
+      },
+      &failed);
+  EXPECT_EQ(end, RunEnd::done) << robot.state.time << " " << to_string(failed.status) << " " << failed.detail;
+  EXPECT_GT(short_of, 0);
+  EXPECT_NEAR(robot.tip().y(), -10 * mm, 0.5 * mm);
+}
+
+/// Motion by a = 2 (goal - x - v h) / h^2 is at the goal after h, in however many parts; at rest and in motion.
+TEST_F(Inverse, PartsOfAStepMakeForTheGoalEvenly) {
+  Scene scene = hinged();
+  scene.targets = {wish("tip", {0, 0, 1}), wish("turn", {0, 0, 1}), wish("bend"), wish("middle", {0, 1, 0})};
+  Robot robot(scene);
+  const Model& model = robot.model;
+  const State before = robot.state;
+  State after = robot.direct(before, {1.0, 0.2});
+  Goal now{Eigen::VectorXd(effector_size(model))}, goal;
+  for (const EffectorModel& own : model.effectors)
+    now.at.segment(own.first, own.size) = effector_value(model, after, own);
+  goal = now;
+  goal.at.array() += 1e-3;
+  // (All of a step: what was asked for.)
+  EXPECT_LT((part_of_goal(model, before, after, goal, 1.0).at - goal.at).norm(), 1e-12);
+  // What gets there by itself is left alone: it went a quarter of its way in a quarter of the step.
+  Goal there = now;
+  for (const EffectorModel& own : model.effectors) {
+    const Eigen::VectorXd start = effector_value(model, before, own);
+    there.at.segment(own.first, own.size) = start + 4.0 * (now.at.segment(own.first, own.size) - start);
+  }
+  EXPECT_LT((part_of_goal(model, before, after, there, 0.25).at - now.at).norm(), 1e-3 * (now.at - there.at).norm());
+  // From rest half of a step goes a quarter of the way.
+  const Goal quarter = part_of_goal(model, after, after, goal, 0.5);
+  EXPECT_LT((quarter.at - now.at - 0.25 * (goal.at - now.at)).norm(), 1e-3 * (goal.at - now.at).norm());
+}
+
 /// What breaks before anything is steered.
 TEST_F(Inverse, FailsAsAStepDoes) {
   Robot robot(two_cables());

@@ -216,6 +216,21 @@ TEST(Contact, WhatStartsInTheGroundIsLiftedGently) {
   EXPECT_LT(last.bodies[0].v.norm(), 1e-3);
 }
 
+/// Without gravity a fiftieth of the depth in a step, and of that a part in a part of the step.
+TEST(Contact, PartsOfStepsLiftAtTheSameSpeed) {
+  Scene scene = on_floor(0.005, 1.0, 0.5);
+  scene.gravity.setZero();
+  const double depth = 5 * mm;
+  scene.bodies.emplace_back("box", box_of(50 * mm, 0.1, Vec3(0, 0, 25 * mm - depth)));
+  const Model model = build(scene, no_mesh);
+  for (const double part : {1.0, 0.1, 1e-3}) {
+    Workspace workspace = make_workspace(model);
+    State state = initial_state(model);
+    ASSERT_TRUE(accepted(step(model, workspace, command_at(model, 0.0), part * 0.005, state).status)) << part;
+    EXPECT_NEAR(state.bodies[0].v.z(), 0.02 * depth / 0.005, 1e-6) << part;
+  }
+}
+
 TEST(Contact, SolidBlockRestsOnThePlane) {
   Scene scene = on_floor(0.01, 0.5, 0.5);
   Solid block;

@@ -5,38 +5,24 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "sinew/sim/agreement.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
-#include "sinew/sim/statics.hpp"
 #include "sinew/sim/step_ends.hpp"
 
 namespace sinew {
 
 namespace {
 
-/// [mm, deg, ...] increments that move effectors no more than this end a search; goals are then met to about that.
-constexpr double kSettled = 1e-5;
 /// Further beyond a limit than this part of its unit, it counts as broken; what is less than rounding costs nothing.
 constexpr double kBroken = 1e-4, kRounding = 1e-9;
 /// [N] or [N m] forces of motors are not told in less than this.
 constexpr double kLeastForce = 1e-4;
 /// [mm, deg, ...] that being beyond a limit costs at least, for what moves effectors by as much.
 constexpr double kLeastPenalty = 1e-2;
-
-void check(const Model& model, const Goal& goal) {
-  if (model.sought.empty() || model.effectors.empty())
-    throw std::invalid_argument("inverse_step: the scene has no targets, or no actuator is sought");
-  if (goal.at.size() != effector_size(model))
-    throw std::invalid_argument("inverse_step: a goal for each component of the effectors is needed");
-  if (!goal.at.allFinite()) throw std::invalid_argument("inverse_step: a goal is not finite");
-  if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static)
-    throw std::invalid_argument("inverse_step: of dynamic and quasi-static scenes only");
-}
 
 /// The four kinds of limits of a motor, as rows.
 struct Kind {
@@ -52,7 +38,7 @@ constexpr auto kRows = static_cast<Eigen::Index>(kKinds.size());
 }  // namespace
 
 void Inverse::begin(const Model& model, const State& start, const Goal& goal, double h) {
-  goal_ = goal;
+  asked_ = goal_ = goal;
   h_ = h;
   reach = INFINITY;
   binding_.clear();
@@ -356,7 +342,7 @@ void Inverse::take(double fraction, const Model& model, Command& command) const 
 
 Aim Inverse::aim(const Model& model, const State& state) {
   Aim aim;
-  effector_errors(model, state, goal_, error_);
+  effector_errors(model, state, asked_, error_);
   aim.farthest = farthest(model, error_);
   aim.binding = binding_;
   aim.dropped = dropped_;
@@ -374,211 +360,13 @@ Aim Inverse::aim(const Model& model, const State& state) {
   for (std::size_t k = 0; k < model.effectors.size(); ++k) {
     const EffectorModel& own = model.effectors[k];
     const int pair = model.outputs[own.output].pair;
-    if (pair >= 0 && goal_.at[own.first] > 0.0 && std::isinf(pressing_of(state, pair).gap))
+    if (pair >= 0 && asked_.at[own.first] > 0.0 && std::isinf(pressing_of(state, pair).gap))
       aim.apart = static_cast<int>(k);
   }
   aim.outcome = aim.farthest <= 1.0 ? Aim::Outcome::reached
                 : binding_.empty()  ? Aim::Outcome::nearest
                                     : Aim::Outcome::limited;
   return aim;
-}
-
-StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort) {
-  check(model, goal);
-  Memory& memory = workspace.memory();
-  memory.inverse.begin(model, state, goal, h);
-  memory.command = command;
-  for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
-  NewtonRules rules = step_rules(model, effort);
-  rules.inverse = &memory.inverse;
-  return step_by(rules, memory, memory.command, h, state);
-}
-
-namespace {
-
-constexpr int kMostTurns = 60;
-/// First region of trust, as a part of the scene's size.
-constexpr double kFirstReach = 0.2;
-/// Half the square of a weighed error that is as good as none.
-constexpr double kMet = 0.5e-4;
-/// What is not worth another turn.
-constexpr double kNoGain = 1e-8;
-
-/// Solves the linear problem at Memory::iterate in Memory::context; false where a matrix is singular.
-bool solve_there(Memory& memory, solid::Tangent tangent, StageTimes& times, const Linearization::Steer& steer) {
-  memory.here.evaluate(memory.context, memory.iterate.state, times);
-  std::string failed;
-  if (!memory.here.finite() || !memory.here.factor(tangent, Linearization::Wanted::any, failed)) return false;
-  memory.here.solve(memory.increment, steer);
-  return memory.increment.reduced.ok;
-}
-
-/// About an equilibrium that a step from `start` has come to.
-bool linearize_at(Memory& memory, const State& start, const State& state, const Command& command, double time,
-                  StageTimes& times, const Linearization::Steer& steer) {
-  StepContext& context = memory.context;
-  context.set(start, command, time - start.time);
-  context.rate = 0.0;
-  memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
-  return solve_there(memory, solid::Tangent::exact, times, steer);
-}
-
-/// Sought commands that agree with those that are told, where rows depend on each other: the nearest to what they are.
-void agree(const Model& model, Memory& memory, const State& state, double time, StageTimes& times, Command& told) {
-  if (model.redundant.empty()) return;
-  StepContext& context = memory.context;
-  context.set(state, told, time - state.time);
-  context.rate = 0.0;
-  memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
-  memory.here.evaluate(context, memory.iterate.state, times);
-  const auto [A, b] = agreement(model, memory.here.reduced());
-  if (b.size() == 0) return;
-  const Eigen::VectorXd more = A.completeOrthogonalDecomposition().solve(b);
-  for (std::size_t a = 0; a < model.sought.size(); ++a)
-    told.actuators[model.sought[a]] += more[static_cast<Eigen::Index>(a)];
-}
-
-/// The first round of a step of h, as the paper's.
-bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
-                    const Linearization::Steer& steer) {
-  memory.context.set(start, command, h);
-  begin_step(memory);
-  place_held(memory.context, memory.iterate.state);
-  return solve_there(memory, solid::Tangent::definite, times, steer);
-}
-
-}  // namespace
-
-StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,
-                               double time, State& state) {
-  check(model, goal);
-  Memory& memory = workspace.memory();
-  Inverse& inverse = memory.inverse;
-  inverse.begin(model, state, goal, time - state.time);
-  Command told = command;
-  for (const int actuator : model.sought) told.actuators[actuator] = told_to(model, state, actuator);
-  StageTimes agreeing;
-  agree(model, memory, state, time, agreeing, told);
-  StepResult at = equilibrium_step(model, workspace, told, state, time);
-  at.report.times += agreeing;
-  if (!accepted(at.report.status)) return at.report;
-  // Where friction remembers the way, every trial goes the whole of it.
-  const bool remembers = !model.pairs.empty() || !model.rubbing.empty();
-  StepReport spent = at.report;
-  double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
-    inverse.reach = reach;
-    const bool ok = linearize_at(
-        memory, remembers ? state : at.next, at.next, told, time, spent.times,
-        [&](Increment& increment) { inverse.steer(memory.context, memory.iterate.state, memory.here, increment); });
-    ++spent.newton;
-    if (!ok) break;
-    inverse.weigh_limits();
-    const double cost = inverse.cost(model, at.next), promised = cost - inverse.promised();
-    if (inverse.motion() <= kSettled && inverse.settled(told, model) && promised <= kNoGain) break;
-    Command next = told;
-    inverse.take(1.0, model, next);
-    StepResult trial = equilibrium_step(model, workspace, next, remembers ? state : at.next, time);
-    spent.newton += trial.report.newton;
-    spent.times += trial.report.times;
-    const double found = accepted(trial.report.status) ? inverse.cost(model, trial.next) : INFINITY;
-    const bool better = found < cost - 1e-4 * std::abs(promised) || found < kMet;
-    const double moved = inverse.moved();
-    // Where there is no equilibrium any more, steps of that length are not tried again.
-    if (!accepted(trial.report.status)) farthest = 0.5 * moved;
-    if (better) {
-      if (cost - found > 0.75 * promised) reach = std::min(std::max(reach, 2.0 * moved), farthest);
-      if (cost - found < 0.25 * promised) reach = std::max(0.5 * moved, kSettled);
-      at = std::move(trial);
-      told = next;
-    } else {
-      reach = 0.25 * std::min(reach, moved);
-      if (!(reach > kSettled)) break;
-    }
-  }
-  inverse.reach = INFINITY;
-  if (!remembers) {
-    // The whole way in one, as whoever is told these commands goes it.
-    StepResult whole = equilibrium_step(model, workspace, told, state, time);
-    spent.newton += whole.report.newton;
-    spent.times += whole.report.times;
-    if (accepted(whole.report.status) &&
-        inverse.cost(model, whole.next) <= inverse.cost(model, at.next) * (1.0 + 1e-6) + 1e-8)
-      at = std::move(whole);
-  }
-  StepReport report = at.report;
-  report.newton = spent.newton;
-  report.times = spent.times;
-  report.aim = inverse.aim(model, at.next);
-  state = std::move(at.next);
-  return report;
-}
-
-Manipulability manipulability(const Eigen::MatrixXd& jacobian) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  return {svd.singularValues(), svd.matrixU(), svd.matrixV(), svd.singularValues().prod()};
-}
-
-ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
-                                   double h) {
-  if (model.sought.empty() || model.effectors.empty())
-    throw std::invalid_argument("actuator_jacobian: the scene has no targets, or no actuator is sought");
-  Memory& memory = workspace.memory();
-  Inverse& inverse = memory.inverse;
-  Goal goal;
-  goal.at.resize(effector_size(model));
-  for (const EffectorModel& own : model.effectors)
-    goal.at.segment(own.first, own.size) = effector_value(model, state, own);
-  inverse.begin(model, state, goal, h);
-  const Command command = command_of(model, state);
-  StageTimes times;
-  Eigen::MatrixXd compliance;
-  const auto look = [&](Increment& increment) {
-    inverse.look(memory.context, memory.iterate.state, memory.here, increment);
-    inverse.follow_contacts();
-    compliance = inverse.compliance(model, memory.here);
-  };
-  const bool ok = of == JacobianOf::equilibrium ? linearize_at(memory, state, state, command, state.time, times, look)
-                                                : linearize_step(memory, state, command, h, times, look);
-  if (!ok || !inverse.jacobian().allFinite()) throw std::runtime_error("actuator_jacobian: a matrix is singular");
-  ActuatorJacobian result{inverse.jacobian(), compliance, inverse.force_change(), inverse.position_change(), {}, {}};
-  for (const EffectorModel& own : model.effectors) {
-    for (const Column& component : effector_columns(model, own))
-      result.rows.push_back(component.name + " [" + component.unit + "]");
-  }
-  for (const int actuator : model.sought) {
-    const ActuatorModel& own = model.actuators[actuator];
-    const MotorWords words = words_of(own);
-    result.columns.push_back(command_name(own) + " [" + (own.told_force() ? words.force_unit : words.position_unit) +
-                             "]");
-  }
-  return result;
-}
-
-Eigen::MatrixXd volume_compliance(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
-                                  double h) {
-  Memory& memory = workspace.memory();
-  const Command command = command_of(model, state);
-  StageTimes times;
-  const auto nothing = [](Increment&) {};
-  const bool ok = of == JacobianOf::equilibrium
-                      ? linearize_at(memory, state, state, command, state.time, times, nothing)
-                      : linearize_step(memory, state, command, h, times, nothing);
-  if (!ok) throw std::runtime_error("volume_compliance: a matrix is singular");
-  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(model.rows, model.rows);
-  for (const solve::VolumePart& volume : memory.here.reduced().problem.volumes) {
-    for (std::size_t j = 0; j < volume.at.size(); ++j) {
-      for (std::size_t i = 0; i < volume.at.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
-        W(volume.at[i], volume.at[j]) +=
-            volume.symmetric ? volume.W(std::max(row, column), std::min(row, column)) : volume.W(row, column);
-      }
-    }
-  }
-  return W;
 }
 
 }  // namespace sinew

@@ -76,7 +76,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const int first = std::max(place.halvings(), std::min(state.halvings, place.most));
   // With contacts an equilibrium has been looked for along parts of the step already.
   const int last = equilibrium && !inverse && !model.pairs.empty() ? first : place.most;
-  Goal goal;
+  Goal goal, ahead;
   StepReport earlier;
   // (Who steers may get a step that is stuck going again.)
   int spent = told.command || told.goal ? 0 : state.spent;
@@ -107,8 +107,10 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
         goal = *told.goal;
       else
         goal_at(model, time, goal);
+      if (!told.goal && part < h) goal_at(model, state.time + h, ahead);
       report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
-                           : inverse_step(model, workspace, goal, command, part, state, effort);
+                           : inverse_step(model, workspace, goal, command, part, state, effort,
+                                          part < h ? Ahead{h, told.goal ? &goal : &ahead} : Ahead{});
     } else {
       report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
                            : step(model, workspace, command, part, state, effort);

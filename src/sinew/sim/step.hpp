@@ -99,7 +99,8 @@ struct Aim {
   /// No other commands within the limits would have done better in the last linearisation. Not known with friction, or
   /// more than a dozen contacts: none around it would have.
   bool certain = false;
-  int apart = -1;  ///< effector whose two are to press and are not near each other
+  int apart = -1;         ///< effector whose two are to press and are not near each other
+  bool short_of = false;  ///< commands that would come nearer were tried, and no step with them converged
   /// [-] by how much the linearisation that says so is off (`StepReport::off`); 0 where it is not known to be.
   double off = 0.0;
 };

@@ -90,6 +90,28 @@ void effector_errors(const Model& model, const State& state, const Goal& goal, E
   }
 }
 
+Goal part_of_goal(const Model& model, const State& before, const State& free, const Goal& goal, double part) {
+  Eigen::VectorXd start, end;
+  effector_errors(model, before, goal, start);
+  effector_errors(model, free, goal, end);
+  Goal nearer = goal;
+  for (const EffectorModel& own : model.effectors) {
+    const OutputModel& output = output_of(model, own);
+    const auto off = end.segment(own.first, own.size), was = start.segment(own.first, own.size);
+    auto at = nearer.at.segment(own.first, own.size);
+    if (output.pair >= 0) {
+      at += (1.0 - part) * off;
+      continue;
+    }
+    const Eigen::VectorXd change = part * part * (was + (off - was) / part);  // of the error, from `free` on
+    if (output.quantity == Quantity::orientation)
+      at = lie::log(lie::exp(-change) * output_axes(model, free, output) * output.upright.transpose());
+    else
+      at += off - change;
+  }
+  return nearer;
+}
+
 double error_of(const EffectorModel& own, const Eigen::VectorXd& errors) {
   double sum = 0.0;
   for (int i = 0; i < own.size; ++i) {
@@ -162,6 +184,7 @@ std::string describe(const Model& model, const Aim& aim) {
   }
   list("dropped ", aim.dropped);
   list("not kept ", aim.broken);
+  if (aim.short_of) text += "; this step goes no further";
   if (aim.apart >= 0)
     text += "; outputs." + model.outputs[model.effectors[aim.apart].output].name + ": the two are not near each other";
   return text;

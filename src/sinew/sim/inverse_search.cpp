@@ -1,0 +1,318 @@
+// Searches for commands: steps and equilibria that bring effectors nearest to their goals, and derivatives by commands.
+#include <Eigen/Dense>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "sinew/sim/agreement.hpp"
+#include "sinew/sim/inverse.hpp"
+#include "sinew/sim/motors.hpp"
+#include "sinew/sim/newton.hpp"
+#include "sinew/sim/places.hpp"
+#include "sinew/sim/statics.hpp"
+#include "sinew/sim/step_ends.hpp"
+
+namespace sinew {
+
+namespace {
+
+void check(const Model& model, const Goal& goal) {
+  if (model.sought.empty() || model.effectors.empty())
+    throw std::invalid_argument("inverse_step: the scene has no targets, or no actuator is sought");
+  if (goal.at.size() != effector_size(model))
+    throw std::invalid_argument("inverse_step: a goal for each component of the effectors is needed");
+  if (!goal.at.allFinite()) throw std::invalid_argument("inverse_step: a goal is not finite");
+  if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static)
+    throw std::invalid_argument("inverse_step: of dynamic and quasi-static scenes only");
+}
+
+constexpr int kMostTurns = 60;
+/// First region of trust, as a part of the scene's size.
+constexpr double kFirstReach = 0.2;
+/// Half the square of a weighed error that is as good as none.
+constexpr double kMet = 0.5e-4;
+/// What is not worth another turn.
+constexpr double kNoGain = 1e-8;
+
+/// Solves the linear problem at Memory::iterate in Memory::context; false where a matrix is singular.
+bool solve_there(Memory& memory, solid::Tangent tangent, StageTimes& times, const Linearization::Steer& steer) {
+  memory.here.evaluate(memory.context, memory.iterate.state, times);
+  std::string failed;
+  if (!memory.here.finite() || !memory.here.factor(tangent, Linearization::Wanted::any, failed)) return false;
+  memory.here.solve(memory.increment, steer);
+  return memory.increment.reduced.ok;
+}
+
+/// About a state that a step of h from `start` has come to; rate: 1 / h, or 0 of an equilibrium.
+bool linearize_at(Memory& memory, const State& start, const State& state, const Command& command, double h, double rate,
+                  StageTimes& times, const Linearization::Steer& steer) {
+  StepContext& context = memory.context;
+  context.set(start, command, h);
+  context.rate = rate;
+  memory.iterate.state = state;
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
+  return solve_there(memory, solid::Tangent::exact, times, steer);
+}
+
+/// Sought commands that agree with those that are told, where rows depend on each other: the nearest to what they are.
+void agree(const Model& model, Memory& memory, const State& state, double time, StageTimes& times, Command& told) {
+  if (model.redundant.empty()) return;
+  StepContext& context = memory.context;
+  context.set(state, told, time - state.time);
+  context.rate = 0.0;
+  memory.iterate.state = state;
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
+  memory.here.evaluate(context, memory.iterate.state, times);
+  const auto [A, b] = agreement(model, memory.here.reduced());
+  if (b.size() == 0) return;
+  const Eigen::VectorXd more = A.completeOrthogonalDecomposition().solve(b);
+  for (std::size_t a = 0; a < model.sought.size(); ++a)
+    told.actuators[model.sought[a]] += more[static_cast<Eigen::Index>(a)];
+}
+
+/// The first round of a step of h, as the paper's.
+bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
+                    const Linearization::Steer& steer) {
+  memory.context.set(start, command, h);
+  begin_step(memory);
+  place_held(memory.context, memory.iterate.state);
+  return solve_there(memory, solid::Tangent::definite, times, steer);
+}
+
+/// How commands lead to states.
+struct Way {
+  std::function<StepResult(const Command&, const State& near)> make;  ///< a step or an equilibrium, from one near it
+  const State* start = nullptr;  ///< of all that `make` makes; else each begins where it is made from
+  double time = 0.0;             ///< [s] of the states
+  double h = 0.0;                ///< [s] of a step, 0 of equilibria
+};
+
+/// Commands, the state they lead to, and what a search has cost.
+struct Found {
+  Command told;
+  StepResult at;
+  StepReport spent;
+  bool short_of = false;  ///< commands that would come nearer lead nowhere: no step or equilibrium was found
+
+  void add(const StepReport& report) {
+    spent.newton += report.newton;
+    spent.times += report.times;
+    spent.contact.sweeps += report.contact.sweeps;
+    spent.contact.newton += report.contact.newton;
+  }
+  void tell(StepReport& report) const {
+    report.newton = spent.newton;
+    report.times = spent.times;
+    report.contact.sweeps = spent.contact.sweeps;
+    report.contact.newton = spent.contact.newton;
+  }
+};
+
+/// Gauss and Newton's method in a region of trust, each of whose steps goes where its commands lead, until no increment
+/// helps. A step in time is no further looked for once one was lost on the way: it would end at the brink.
+void search(const Model& model, Memory& memory, const Way& way, Found& found) {
+  Inverse& inverse = memory.inverse;
+  double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    inverse.reach = reach;
+    const State& start = way.start ? *way.start : found.at.next;
+    const bool ok = linearize_at(memory, start, found.at.next, found.told, way.h > 0.0 ? way.h : way.time - start.time,
+                                 way.h > 0.0 ? 1.0 / way.h : 0.0, found.spent.times, [&](Increment& increment) {
+                                   inverse.steer(memory.context, memory.iterate.state, memory.here, increment);
+                                 });
+    ++found.spent.newton;
+    if (!ok) break;
+    inverse.weigh_limits();
+    const double cost = inverse.cost(model, found.at.next), promised = cost - inverse.promised();
+    if (inverse.motion() <= Inverse::kSettled && inverse.settled(found.told, model) && promised <= kNoGain) break;
+    Command next = found.told;
+    inverse.take(1.0, model, next);
+    StepResult trial = way.make(next, start);
+    found.add(trial.report);
+    const bool leads = accepted(trial.report.status);
+    const double there = leads ? inverse.cost(model, trial.next) : INFINITY;
+    const bool better = there < cost - 1e-4 * std::abs(promised) || there < kMet;
+    const double moved = inverse.moved();
+    // Where there is nothing any more, steps of that length are not tried again.
+    if (!leads) {
+      farthest = 0.5 * moved;
+      found.short_of = true;
+    }
+    if (better) {
+      if (cost - there > 0.75 * promised) reach = std::min(std::max(reach, 2.0 * moved), farthest);
+      if (cost - there < 0.25 * promised) reach = std::max(0.5 * moved, Inverse::kSettled);
+      found.at = std::move(trial);
+      found.told = next;
+      if (way.h > 0.0 && found.short_of) break;
+    } else {
+      reach = 0.25 * std::min(reach, moved);
+      if (!(reach > Inverse::kSettled)) break;
+    }
+  }
+  inverse.reach = INFINITY;
+}
+
+/// From commands as they are to those that bring the effectors as near to what they make for as steps of h converge;
+/// of a part of a step that is what lies `ahead`.
+StepReport search_step(const Model& model, Memory& memory, const NewtonRules& forward, const Goal& goal,
+                       const Command& command, double h, const Ahead& ahead, State& state) {
+  const Way way{[&](const Command& told, const State& from) {
+                  StepResult made{from, {}};
+                  made.report = step_by(forward, memory, told, h, made.next);
+                  return made;
+                },
+                &state, 0.0, h};
+  Found found{command, way.make(command, state), {}, false};
+  found.add(found.at.report);
+  if (!accepted(found.at.report.status)) return found.at.report;
+  Goal makes_for = goal;
+  if (h < ahead.h) {
+    makes_for = part_of_goal(model, state, found.at.next, *ahead.goal, h / ahead.h);
+    memory.inverse.begin(model, state, goal, h);
+    memory.inverse.head_for(makes_for);
+    NewtonRules rules = forward;
+    rules.inverse = &memory.inverse;
+    StepReport report = step_by(rules, memory, command, h, state);
+    found.add(report);
+    if (accepted(report.status) || rules.fixed) {
+      found.tell(report);
+      return report;
+    }
+  }
+  memory.inverse.begin(model, state, goal, h);
+  memory.inverse.head_for(makes_for);
+  search(model, memory, way, found);
+  StepReport report = found.at.report;
+  found.tell(report);
+  report.aim = memory.inverse.aim(model, found.at.next);
+  report.aim.short_of = found.short_of && report.aim.outcome != Aim::Outcome::reached;
+  state = std::move(found.at.next);
+  return report;
+}
+
+}  // namespace
+
+StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
+                        State& state, Effort effort, const Ahead& ahead) {
+  check(model, goal);
+  if (ahead.goal) check(model, *ahead.goal);
+  Memory& memory = workspace.memory();
+  const bool moves = model.scene.analysis == Analysis::dynamic;
+  memory.command = command;
+  for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
+  const NewtonRules forward = step_rules(model, effort);
+  if (moves && h < ahead.h) return search_step(model, memory, forward, goal, Command(memory.command), h, ahead, state);
+  memory.inverse.begin(model, state, goal, h);
+  NewtonRules rules = forward;
+  rules.inverse = &memory.inverse;
+  StepReport report = step_by(rules, memory, memory.command, h, state);
+  if (accepted(report.status) || rules.fixed || !moves) return report;
+  StepReport searched = search_step(model, memory, forward, goal, Command(memory.command), h, {}, state);
+  searched.newton += report.newton;
+  searched.times += report.times;
+  searched.contact.sweeps += report.contact.sweeps;
+  searched.contact.newton += report.contact.newton;
+  return searched;
+}
+
+StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,
+                               double time, State& state) {
+  check(model, goal);
+  Memory& memory = workspace.memory();
+  Inverse& inverse = memory.inverse;
+  inverse.begin(model, state, goal, time - state.time);
+  Found found;
+  found.told = command;
+  for (const int actuator : model.sought) found.told.actuators[actuator] = told_to(model, state, actuator);
+  agree(model, memory, state, time, found.spent.times, found.told);
+  // Where friction remembers the way, every trial goes the whole of it.
+  const bool remembers = !model.pairs.empty() || !model.rubbing.empty();
+  const Way way{
+      [&](const Command& told, const State& near) { return equilibrium_step(model, workspace, told, near, time); },
+      remembers ? &state : nullptr, time};
+  found.at = way.make(found.told, state);
+  found.add(found.at.report);
+  if (!accepted(found.at.report.status)) {
+    found.tell(found.at.report);
+    return found.at.report;
+  }
+  search(model, memory, way, found);
+  if (!remembers) {
+    // The whole way in one, as whoever is told these commands goes it.
+    StepResult whole = way.make(found.told, state);
+    found.add(whole.report);
+    if (accepted(whole.report.status) &&
+        inverse.cost(model, whole.next) <= inverse.cost(model, found.at.next) * (1.0 + 1e-6) + 1e-8)
+      found.at = std::move(whole);
+  }
+  StepReport report = found.at.report;
+  found.tell(report);
+  report.aim = inverse.aim(model, found.at.next);
+  state = std::move(found.at.next);
+  return report;
+}
+
+Manipulability manipulability(const Eigen::MatrixXd& jacobian) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.singularValues(), svd.matrixU(), svd.matrixV(), svd.singularValues().prod()};
+}
+
+ActuatorJacobian actuator_jacobian(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
+                                   double h) {
+  if (model.sought.empty() || model.effectors.empty())
+    throw std::invalid_argument("actuator_jacobian: the scene has no targets, or no actuator is sought");
+  Memory& memory = workspace.memory();
+  Inverse& inverse = memory.inverse;
+  Goal goal;
+  goal.at.resize(effector_size(model));
+  for (const EffectorModel& own : model.effectors)
+    goal.at.segment(own.first, own.size) = effector_value(model, state, own);
+  inverse.begin(model, state, goal, h);
+  const Command command = command_of(model, state);
+  StageTimes times;
+  Eigen::MatrixXd compliance;
+  const auto look = [&](Increment& increment) {
+    inverse.look(memory.context, memory.iterate.state, memory.here, increment);
+    inverse.follow_contacts();
+    compliance = inverse.compliance(model, memory.here);
+  };
+  const bool ok = of == JacobianOf::equilibrium ? linearize_at(memory, state, state, command, 0.0, 0.0, times, look)
+                                                : linearize_step(memory, state, command, h, times, look);
+  if (!ok || !inverse.jacobian().allFinite()) throw std::runtime_error("actuator_jacobian: a matrix is singular");
+  ActuatorJacobian result{inverse.jacobian(), compliance, inverse.force_change(), inverse.position_change(), {}, {}};
+  for (const EffectorModel& own : model.effectors) {
+    for (const Column& component : effector_columns(model, own))
+      result.rows.push_back(component.name + " [" + component.unit + "]");
+  }
+  for (const int actuator : model.sought) {
+    const ActuatorModel& own = model.actuators[actuator];
+    const MotorWords words = words_of(own);
+    result.columns.push_back(command_name(own) + " [" + (own.told_force() ? words.force_unit : words.position_unit) +
+                             "]");
+  }
+  return result;
+}
+
+Eigen::MatrixXd volume_compliance(const Model& model, Workspace& workspace, const State& state, JacobianOf of,
+                                  double h) {
+  Memory& memory = workspace.memory();
+  const Command command = command_of(model, state);
+  StageTimes times;
+  const auto nothing = [](Increment&) {};
+  const bool ok = of == JacobianOf::equilibrium ? linearize_at(memory, state, state, command, 0.0, 0.0, times, nothing)
+                                                : linearize_step(memory, state, command, h, times, nothing);
+  if (!ok) throw std::runtime_error("volume_compliance: a matrix is singular");
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(model.rows, model.rows);
+  for (const solve::VolumePart& volume : memory.here.reduced().problem.volumes) {
+    for (std::size_t j = 0; j < volume.at.size(); ++j) {
+      for (std::size_t i = 0; i < volume.at.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+        W(volume.at[i], volume.at[j]) +=
+            volume.symmetric ? volume.W(std::max(row, column), std::min(row, column)) : volume.W(row, column);
+      }
+    }
+  }
+  return W;
+}
+
+}  // namespace sinew
