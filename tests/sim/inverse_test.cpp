@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "sim/inverse_robots.hpp"
+#include "sinew/lie/rotation.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/run.hpp"
@@ -337,31 +338,54 @@ TEST_F(Inverse, TargetsThatJumpAreFollowedOverSteps) {
   EXPECT_NEAR(robot.tip().y(), -10 * mm, 0.5 * mm);
 }
 
-/// Motion by a = 2 (goal - x - v h) / h^2 is at the goal after h, in however many parts; at rest and in motion.
-TEST_F(Inverse, PartsOfAStepMakeForTheGoalEvenly) {
+/// Parts of a halved step make for places on the way: straight, by an even turn, in proportion.
+TEST_F(Inverse, PartsOfAStepGoPartsOfTheWay) {
   Scene scene = hinged();
   scene.targets = {wish("tip", {0, 0, 1}), wish("turn", {0, 0, 1}), wish("bend"), wish("middle", {0, 1, 0})};
   Robot robot(scene);
   const Model& model = robot.model;
-  const State before = robot.state;
-  State after = robot.direct(before, {1.0, 0.2});
-  Goal now{Eigen::VectorXd(effector_size(model))}, goal;
+  const State from = robot.direct(robot.state, {1.0, 0.2});
+  Goal now{Eigen::VectorXd(effector_size(model))};
   for (const EffectorModel& own : model.effectors)
-    now.at.segment(own.first, own.size) = effector_value(model, after, own);
-  goal = now;
-  goal.at.array() += 1e-3;
-  // (All of a step: what was asked for.)
-  EXPECT_LT((part_of_goal(model, before, after, goal, 1.0).at - goal.at).norm(), 1e-12);
-  // What gets there by itself is left alone: it went a quarter of its way in a quarter of the step.
-  Goal there = now;
+    now.at.segment(own.first, own.size) = effector_value(model, from, own);
+  Goal goal = now;
+  goal.at.array() += 0.3;
+  EXPECT_LT((part_of_goal(model, from, goal, 1.0).at - goal.at).norm(), 1e-12);
+  EXPECT_LT((part_of_goal(model, from, goal, 0.0).at - now.at).norm(), 1e-12);
+  const Goal third = part_of_goal(model, from, goal, 1.0 / 3.0);
   for (const EffectorModel& own : model.effectors) {
-    const Eigen::VectorXd start = effector_value(model, before, own);
-    there.at.segment(own.first, own.size) = start + 4.0 * (now.at.segment(own.first, own.size) - start);
+    const auto of = [&own](const Goal& all) { return Eigen::VectorXd(all.at.segment(own.first, own.size)); };
+    if (model.outputs[own.output].quantity == Quantity::orientation) {
+      const rod::Mat3 start = lie::exp(Vec3(of(now))), turn = lie::exp(Vec3(of(third))) * start.transpose();
+      EXPECT_LT((turn * turn * turn * start - lie::exp(Vec3(of(goal)))).norm(), 1e-12);
+    } else {
+      EXPECT_LT((of(third) - of(now) - (of(goal) - of(now)) / 3.0).norm(), 1e-12);
+    }
   }
-  EXPECT_LT((part_of_goal(model, before, after, there, 0.25).at - now.at).norm(), 1e-3 * (now.at - there.at).norm());
-  // From rest half of a step goes a quarter of the way.
-  const Goal quarter = part_of_goal(model, after, after, goal, 0.5);
-  EXPECT_LT((quarter.at - now.at - 0.25 * (goal.at - now.at)).norm(), 1e-3 * (goal.at - now.at).norm());
+}
+
+/// A step that only goes in parts ends at the target all the same, and what its parts make for is said.
+TEST_F(Inverse, HalvedStepsEndAtTheTarget) {
+  Scene scene = two_cables();
+  scene.newton.iterations = 0;
+  scene.time = {0.02, 0.1};
+  const Vec3 tip(50 * mm, 5 * mm, 5 * mm);
+  scene.targets[0].at = Track{{0.0, 0.1}, {tip, tip - 1 * mm * Vec3::UnitY()}};
+  scene.targets[0].weights = {0, 1, 0};
+  Robot robot(scene);
+  Workspace workspace = make_workspace(robot.model);
+  State state = robot.state;
+  int parts = 0;
+  while (state.grid < 5) {
+    if (state.time == static_cast<double>(state.grid) * 0.02) state.halvings = 2;  // as after a step that was hard
+    const StepReport report = advance(robot.model, workspace, state);
+    ASSERT_TRUE(accepted(report.status)) << report.detail;
+    ++parts;
+    const double y = robot.tip(state).y(), wanted = 5 * mm - 1 * mm * state.time / 0.1;
+    EXPECT_NEAR(y, wanted, 1e-3 * mm) << state.time;
+    EXPECT_NE(report.aim.outcome, Outcome::nearest);
+  }
+  EXPECT_GT(parts, 10);
 }
 
 /// What breaks before anything is steered.

@@ -522,6 +522,27 @@ TEST(Faults, cable_on_post) {
   }
 }
 
+// A capsule is thrown at a thin rod, which folds round it: it runs at any step, or says what does not converge.
+TEST(Faults, thin_rod_struck) {
+  for (const char* step : {"2.2 ms", "1.1 ms", "0.22 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("thin_rod_struck", {std::string("time.step=") + step});
+    if (run.done()) continue;
+    EXPECT_THAT(run.failure().detail, HasSubstr("capsule and rod")) << run.why();
+    EXPECT_LT(run.largest("energy.kinetic"), 3e-3);  // (2.3e-3 J were put in)
+  }
+}
+
+// What lies still rolls by rounding: `coarse_rolling` told of 11 %.
+TEST(Faults, box_rests_on_rods) {
+  const RecordedRun run = fault("box_rests_on_rods");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_NEAR(run.last("ta.normal"), 9.81e-3, 1e-4);
+  EXPECT_NEAR(run.last("tb.normal"), 9.81e-3, 1e-4);
+  const Warning* told = run.warning("coarse_rolling");
+  EXPECT_FALSE(told) << to_string(*told);
+}
+
 // A tie that leaves one turn free stopped at 90 degrees of it.
 TEST(Faults, tie_free_turn) {
   for (const char* turn : {"200 deg", "-200 deg", "800 deg"}) {

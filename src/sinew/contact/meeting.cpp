@@ -16,15 +16,15 @@ Vec3 into(const Pose& pose, const Vec3& x) { return pose.R.transpose() * (x - po
 /// stands.
 void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& points) {
   Vec3 down(-n.x(), -n.y(), 0.0);
-  const bool stands = down.norm() <= 1e-9;
-  down = stands ? Vec3(Vec3::UnitX()) : Vec3(down.normalized());
+  const bool stands = down.norm() <= kFlatRim;
+  down = down.norm() <= 1e-12 ? Vec3(Vec3::UnitX()) : Vec3(down.normalized());
   const Vec3 across(-down.y(), down.x(), 0.0);
   for (const double end : {-0.5, 0.5}) {
     const Vec3 cap(0.0, 0.0, end * cylinder.length);
-    if (stands) {  // every direction is as low
+    if (stands) {  // every direction is as low, but for rounding
       points.push_back(point_at(cap + cylinder.radius * down, 0.0));
     } else {
-      points.push_back(circle_at(cap, Vec3::UnitZ(), cylinder.radius));
+      points.push_back(circle_at(cap, Vec3::UnitZ(), cylinder.radius, down));
     }
     for (const Vec3& direction : {across, Vec3(-down), Vec3(-across)})
       points.push_back(point_at(cap + cylinder.radius * direction, 0.0));
@@ -404,6 +404,7 @@ Simplex moved(const Pose& pose, Simplex own) {
   for (int i = 0; i < own.corners(); ++i) own.x[i] = pose * own.x[i];
   own.normal = pose.R * own.normal;
   own.rim = pose.R * own.rim;
+  own.low = pose.R * own.low;
   return own;
 }
 

@@ -31,9 +31,10 @@ Simplex plane_at(const Vec3& x, const Vec3& normal) {
   return own;
 }
 
-Simplex circle_at(const Vec3& middle, const Vec3& axis, double radius) {
+Simplex circle_at(const Vec3& middle, const Vec3& axis, double radius, const Vec3& low) {
   Simplex own = point_at(middle, 0.0);
   own.rim = radius * axis;
+  own.low = low;
   return own;
 }
 
@@ -41,7 +42,8 @@ Vec3 lowest_on_rim(const Simplex& own, const Vec3& normal) {
   const double radius = own.rim.norm();
   if (radius == 0.0) return Vec3::Zero();
   const Vec3 axis = own.rim / radius;
-  const Vec3 down = axis * axis.dot(normal) - normal;
+  Vec3 down = axis * axis.dot(normal) - normal;
+  if (const double tilt = down.norm(); tilt < kFlatRim) down += (kFlatRim - tilt) * own.low;
   const double length = down.norm();
   return radius * (length > 1e-9 ? Vec3(down / length) : axis.unitOrthogonal());
 }

@@ -21,6 +21,9 @@ struct Simplex {
   /// Not zero: of a point, which is then the middle of a circle across this vector, as long as the circle's radius [m].
   /// Its lowest point over a plane is meant, whichever that is as the circle turns.
   Vec3 rim = Vec3::Zero();
+  /// Of a circle: from its middle to where it was lowest when it was found, of length 1. What lies flat, but for
+  /// kFlatRim, has its lowest point there: where rounding tips it would make that jump about.
+  Vec3 low = Vec3::Zero();
   int corners() const { return kind == Kind::triangle ? 3 : kind == Kind::segment ? 2 : 1; }
 };
 
@@ -29,7 +32,9 @@ Simplex point_at(const Vec3& x, double radius);
 Simplex segment_at(const Vec3& from, const Vec3& to, const Vec3& outward, double radius);
 Simplex plane_at(const Vec3& x, const Vec3& normal);
 /// A circle around `axis` (of length 1), which meets planes alone.
-Simplex circle_at(const Vec3& middle, const Vec3& axis, double radius);
+Simplex circle_at(const Vec3& middle, const Vec3& axis, double radius, const Vec3& low);
+/// Sine of the tilt below which a circle lies flat on a plane.
+inline constexpr double kFlatRim = 1e-5;
 
 /// From the middle of a circle to its lowest point over a plane with this normal; zero of what is none.
 Vec3 lowest_on_rim(const Simplex& own, const Vec3& normal);

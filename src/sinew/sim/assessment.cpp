@@ -11,6 +11,7 @@
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/sliding_rods.hpp"
 #include "sinew/sim/touched_rods.hpp"
+#include "sinew/sim/unbalanced.hpp"
 #include "sinew/sim/work.hpp"
 
 namespace sinew {
@@ -363,7 +364,15 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
   if (!(gain > kGain * size) || !(size > 1e-14 * model.bearing * model.size)) return {};
   return "contacts have added " + three_digits(gain) + " J, " + three_digits(gain / size) +
-         " of the kinetic and elastic energy";
+         " of the kinetic and elastic energy; the hardest is that of " + hardest_contact(model, next);
+}
+
+std::string known_contradiction(const Model& model) {
+  const Warning* told = nullptr;
+  for (const Warning& own : model.warnings) {
+    if (own.code == "contradicting_commands") told = &own;
+  }
+  return told ? "; " + told->where + ": " + told->message : "";
 }
 
 std::string describe_contradiction(const Model& model, const RedundantRows& rows, const Eigen::VectorXd& c) {

@@ -110,6 +110,9 @@ solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const 
 /// A table must have as many times as values.
 void check_drive(const Drive& drive, const std::string& path);
 
+/// Warns of tables that go up and down between two steps, and of frames that turn far in one.
+void warn_of_tables(Model& model);
+
 /// Statics needs bodies that something holds; in motion they may fly, which is warned of.
 void check_held(Model& model, int number);
 

@@ -321,25 +321,29 @@ void ContactForces::watched_motion(const StepContext& context, const std::vector
   }
 }
 
-double ContactForces::error(const StepContext& context, const State& iterate, const ContactRoom& room) const {
-  if (!wanted(context.model, room)) return 0.0;
+ContactForces::Worst ContactForces::worst(const StepContext& context, const State& iterate,
+                                          const ContactRoom& room) const {
+  if (!wanted(context.model, room)) return {};
   if (problem_.D.rows() != 3 * contacts() || touching_ != room.playing) {  // of open ones no compliance is asked for
-    if (!context.model.rubbing.empty()) return INFINITY;
-    const auto open = [&](int i) {
-      return iterate.contacts[i].force.isZero(0.0) && room.touches[i].u[0] >= room.least[i];
-    };
-    return std::all_of(room.playing.begin(), room.playing.end(), open) ? 0.0 : INFINITY;
+    if (!context.model.rubbing.empty()) return {INFINITY};
+    const auto loaded = std::find_if(room.playing.begin(), room.playing.end(), [&](int i) {
+      return !iterate.contacts[i].force.isZero(0.0) || room.touches[i].u[0] < room.least[i];
+    });
+    return loaded == room.playing.end() ? Worst{} : Worst{INFINITY, *loaded};
   }
-  double worst = 0.0;
+  Worst worst;
   for (int i = 0; i < contacts(); ++i) {
     const auto [force, u] = at(context, iterate, room, i);
     const auto [normal, tangent] = solve::own_compliance(problem_, i);
-    worst = std::max(worst, std::abs(std::min(normal * force[0], u[0])));
     const double radius = problem_.mu[i] * std::max(0.0, force[0]) * tangent;
     const Eigen::Vector2d t = tangent * force.tail<2>(), aim = t - u.tail<2>();
     const double length = aim.norm();
     const Eigen::Vector2d on = length > radius ? Eigen::Vector2d(aim * (radius / length)) : aim;
-    worst = std::max(worst, (t - on).norm());
+    const double error = std::max(std::abs(std::min(normal * force[0], u[0])), (t - on).norm());
+    if (error <= worst.error) continue;  // (NaN stays)
+    const int touching = static_cast<int>(touching_.size());
+    worst = i < touching ? Worst{error, touching_[static_cast<std::size_t>(i)]}
+                         : Worst{error, -1, rubbing_[static_cast<std::size_t>(i - touching)].point};
   }
   return worst;
 }

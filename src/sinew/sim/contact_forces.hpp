@@ -54,7 +54,16 @@ class ContactForces {
                       Eigen::Ref<Eigen::VectorXd> motion) const;
   /// [m] how far the forces of an iterate are from what the laws ask for, told as displacements by the D of the last
   /// `prepare`; that of the first is not known, and infinite.
-  double error(const StepContext& context, const State& iterate, const ContactRoom& room) const;
+  double error(const StepContext& context, const State& iterate, const ContactRoom& room) const {
+    return worst(context, iterate, room).error;
+  }
+  /// The one whose force is furthest from that, of the iterate's contacts, or of its points that rub in a channel;
+  /// -1: none, or it is not known.
+  struct Worst {
+    double error = 0.0;
+    int contact = -1, rubbing = -1;
+  };
+  Worst worst(const StepContext& context, const State& iterate, const ContactRoom& room) const;
 
   /// The contact of the iterate that closes although nothing answers along its normal, no strain, node or body; -1:
   /// none.

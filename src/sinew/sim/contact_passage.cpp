@@ -19,6 +19,8 @@ using contact::Simplex;
 constexpr double kDeepest = 0.25;
 /// And by which a rod may lie in what it touches between the places where it does, unsaid.
 constexpr double kDeepestBetween = 0.1;
+/// And that parts of rigid shapes may come to overlap in a step by which these were not near each other.
+constexpr double kDeepestMade = 0.02;
 
 /// Both ends of a step.
 struct StepMotion {
@@ -229,6 +231,10 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
       const double depth = overlap_of_shapes(motion, pair, 1.0) - pair.depth;
       note_overlap(i, depth, 0.0);
       note(Passage::Kind::passed, i, depth, kDeepest * thin);
+      if (context.rate > 0.0 && depth > kDeepestMade * thin) {
+        const double made = depth + pair.depth - std::max(pair.depth, overlap_of_shapes(motion, pair, 0.0));
+        note(Passage::Kind::passed, i, made, kDeepestMade * thin);
+      }
     }
     // Two that were apart have to move by the thickness of both to get to each other's other side.
     if (speed <= std::min(alarm, 0.5 * thin)) continue;

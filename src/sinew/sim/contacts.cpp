@@ -184,10 +184,10 @@ double least_gap(const StepContext& context, double restitution, const Beginning
   if (context.rate == 0.0) return 0.0;
   const double gravity = context.gravity.norm();
   if (now.gap < 0.0) {
-    // Bodies that overlap are lifted no faster than a fall from that height, or in some fifty steps without gravity:
-    // at a speed, that is, which does not grow where steps are halved.
-    const double speed = std::max(std::sqrt(gravity * -now.gap), -0.02 * now.gap / context.model.scene.time.step);
-    const double lift = speed * context.h;
+    // Bodies that overlap are lifted no faster than a fall from that height, or in some fifty steps without gravity; in
+    // parts of steps at the same speed.
+    const double part = std::min(1.0, context.h / context.model.scene.time.step);
+    const double lift = std::max(std::sqrt(gravity * -now.gap) * context.h, -0.02 * now.gap * part);
     return std::min(0.0, now.gap + lift);
   }
   // What rests on the ground falls by g h in every step, and is not to bounce.

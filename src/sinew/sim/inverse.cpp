@@ -37,8 +37,10 @@ constexpr auto kRows = static_cast<Eigen::Index>(kKinds.size());
 
 }  // namespace
 
-void Inverse::begin(const Model& model, const State& start, const Goal& goal, double h) {
-  asked_ = goal_ = goal;
+void Inverse::begin(const Model& model, const State& start, const Goal& goal, double h, const Goal* on_the_way) {
+  asked_ = goal;
+  goal_ = on_the_way ? *on_the_way : goal;
+  on_the_way_ = on_the_way != nullptr;
   h_ = h;
   reach = INFINITY;
   binding_.clear();
@@ -364,8 +366,9 @@ Aim Inverse::aim(const Model& model, const State& state) {
       aim.apart = static_cast<int>(k);
   }
   aim.outcome = aim.farthest <= 1.0 ? Aim::Outcome::reached
-                : binding_.empty()  ? Aim::Outcome::nearest
-                                    : Aim::Outcome::limited;
+                : !binding_.empty() ? Aim::Outcome::limited
+                : on_the_way_       ? Aim::Outcome::on_the_way
+                                    : Aim::Outcome::nearest;
   return aim;
 }
 

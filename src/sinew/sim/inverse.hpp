@@ -17,9 +17,8 @@ class Inverse {
   /// [mm, deg, ...] increments that move effectors no more than this end a search; goals are then met to about that.
   static constexpr double kSettled = 1e-5;
   /// For a step of h [s] from a state; h = 0: rates do not matter.
-  void begin(const Model& model, const State& start, const Goal& goal, double h);
-  /// Makes for another goal than the one by which `aim` judges.
-  void head_for(const Goal& goal) { goal_ = goal; }
+  /// `on_the_way`: what is made for instead of the goal, by which `aim` judges.
+  void begin(const Model& model, const State& start, const Goal& goal, double h, const Goal* on_the_way = nullptr);
   /// Adds to an increment what the best commands change.
   void steer(const StepContext& context, const State& iterate, Linearization& here, Increment& increment);
   /// What it takes of solutions that are not yet polished.
@@ -65,6 +64,7 @@ class Inverse {
   void add_agreement(const Model& model, const Reduced& reduced);
 
   Goal asked_, goal_;  ///< what was asked for, and what is made for
+  bool on_the_way_ = false;
   solve::CoupledFactor::Part part_ = solve::CoupledFactor::Part::all;
   double h_ = 0.0;
   std::vector<double> start_force_, start_position_;
@@ -80,20 +80,16 @@ class Inverse {
   std::vector<Bound> bounds_, binding_, dropped_;
 };
 
-/// What a part of a step makes for: to be there a whole step from its beginning (`part_of_goal`).
-struct Ahead {
-  double h = 0.0;              ///< [s] of the whole step; 0: the step is no part
-  const Goal* goal = nullptr;  ///< then
-};
-
 /// A step as `step` makes, whose sought motors bring the effectors nearest to their goals within their limits. With
 /// `newton: n` of the scene in so many linearisations (1: the paper's one problem a step), else until it has converged.
 /// Where commands and motion together do not converge, in motion, commands are looked for from those of the state on,
-/// in a region of trust, as far towards the goals as steps converge (`Aim::short_of`). Of the command the sought
+/// in a region of trust, as far towards the goals as steps converge (`Aim::short_of`).
+/// A part of a step may make for another place, on the way to `goal`, by which it is judged all the same.
+/// Of the command the sought
 /// actuators do not count. What came of it is in StepReport::aim. Throws std::invalid_argument where the goal has
 /// another size or is not finite, or the model has no targets.
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort = {}, const Ahead& ahead = {});
+                        State& state, Effort effort = {}, const Goal* on_the_way = nullptr);
 
 /// The equilibrium under what is prescribed at `time`, as `equilibrium_step` finds it, with the commands that bring the
 /// effectors nearest to their goals within their limits: Gauss and Newton's method on the exact tangents of equilibria,

@@ -26,7 +26,8 @@ void check(const Model& model, const Goal& goal) {
     throw std::invalid_argument("inverse_step: of dynamic and quasi-static scenes only");
 }
 
-constexpr int kMostTurns = 60;
+/// Of a search, and of one for a step in time, whose next one goes on.
+constexpr int kMostTurns = 60, kMostTurnsInMotion = 12;
 /// First region of trust, as a part of the scene's size.
 constexpr double kFirstReach = 0.2;
 /// Half the square of a weighed error that is as good as none.
@@ -109,22 +110,26 @@ struct Found {
 };
 
 /// Gauss and Newton's method in a region of trust, each of whose steps goes where its commands lead, until no increment
-/// helps. A step in time is no further looked for once one was lost on the way: it would end at the brink.
-void search(const Model& model, Memory& memory, const Way& way, Found& found) {
+/// helps. A step in time is no further looked for once one was lost on the way: it would end at the brink. False where
+/// nothing better was found although there was more to go.
+bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
   Inverse& inverse = memory.inverse;
+  const bool moves = way.h > 0.0;
   double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  bool settled = false, came_nearer = false;
+  for (int turn = 0; turn < (moves ? kMostTurnsInMotion : kMostTurns) && !settled; ++turn) {
     inverse.reach = reach;
     const State& start = way.start ? *way.start : found.at.next;
-    const bool ok = linearize_at(memory, start, found.at.next, found.told, way.h > 0.0 ? way.h : way.time - start.time,
-                                 way.h > 0.0 ? 1.0 / way.h : 0.0, found.spent.times, [&](Increment& increment) {
+    const bool ok = linearize_at(memory, start, found.at.next, found.told, moves ? way.h : way.time - start.time,
+                                 moves ? 1.0 / way.h : 0.0, found.spent.times, [&](Increment& increment) {
                                    inverse.steer(memory.context, memory.iterate.state, memory.here, increment);
                                  });
     ++found.spent.newton;
     if (!ok) break;
     inverse.weigh_limits();
     const double cost = inverse.cost(model, found.at.next), promised = cost - inverse.promised();
-    if (inverse.motion() <= Inverse::kSettled && inverse.settled(found.told, model) && promised <= kNoGain) break;
+    settled = inverse.motion() <= Inverse::kSettled && inverse.settled(found.told, model) && promised <= kNoGain;
+    if (settled) break;
     Command next = found.told;
     inverse.take(1.0, model, next);
     StepResult trial = way.make(next, start);
@@ -143,19 +148,24 @@ void search(const Model& model, Memory& memory, const Way& way, Found& found) {
       if (cost - there < 0.25 * promised) reach = std::max(0.5 * moved, Inverse::kSettled);
       found.at = std::move(trial);
       found.told = next;
-      if (way.h > 0.0 && found.short_of) break;
+      came_nearer = true;
+      if (moves && found.short_of) break;
     } else {
       reach = 0.25 * std::min(reach, moved);
+      settled = !(reach > Inverse::kSettled) && !found.short_of;
       if (!(reach > Inverse::kSettled)) break;
     }
   }
   inverse.reach = INFINITY;
+  return settled || came_nearer;
 }
 
-/// From commands as they are to those that bring the effectors as near to what they make for as steps of h converge;
-/// of a part of a step that is what lies `ahead`.
-StepReport search_step(const Model& model, Memory& memory, const NewtonRules& forward, const Goal& goal,
-                       const Command& command, double h, const Ahead& ahead, State& state) {
+/// From commands as they are to those that bring the effectors as near to what they make for as steps of h converge.
+/// On failure the state stays.
+StepReport search_step(const Model& model, Memory& memory, const NewtonRules& forward, Command command, double h,
+                       State& state) {
+  StageTimes times;
+  agree(model, memory, state, state.time + h, times, command);
   const Way way{[&](const Command& told, const State& from) {
                   StepResult made{from, {}};
                   made.report = step_by(forward, memory, told, h, made.next);
@@ -163,27 +173,13 @@ StepReport search_step(const Model& model, Memory& memory, const NewtonRules& fo
                 },
                 &state, 0.0, h};
   Found found{command, way.make(command, state), {}, false};
+  found.spent.times = times;
   found.add(found.at.report);
-  if (!accepted(found.at.report.status)) return found.at.report;
-  Goal makes_for = goal;
-  if (h < ahead.h) {
-    makes_for = part_of_goal(model, state, found.at.next, *ahead.goal, h / ahead.h);
-    memory.inverse.begin(model, state, goal, h);
-    memory.inverse.head_for(makes_for);
-    NewtonRules rules = forward;
-    rules.inverse = &memory.inverse;
-    StepReport report = step_by(rules, memory, command, h, state);
-    found.add(report);
-    if (accepted(report.status) || rules.fixed) {
-      found.tell(report);
-      return report;
-    }
-  }
-  memory.inverse.begin(model, state, goal, h);
-  memory.inverse.head_for(makes_for);
-  search(model, memory, way, found);
+  if (accepted(found.at.report.status) && !search(model, memory, way, found))
+    found.at.report.status = Status::max_iterations;
   StepReport report = found.at.report;
   found.tell(report);
+  if (!accepted(report.status)) return report;
   report.aim = memory.inverse.aim(model, found.at.next);
   report.aim.short_of = found.short_of && report.aim.outcome != Aim::Outcome::reached;
   state = std::move(found.at.next);
@@ -193,26 +189,27 @@ StepReport search_step(const Model& model, Memory& memory, const NewtonRules& fo
 }  // namespace
 
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort, const Ahead& ahead) {
+                        State& state, Effort effort, const Goal* on_the_way) {
   check(model, goal);
-  if (ahead.goal) check(model, *ahead.goal);
+  if (on_the_way) check(model, *on_the_way);
   Memory& memory = workspace.memory();
-  const bool moves = model.scene.analysis == Analysis::dynamic;
+  memory.inverse.begin(model, state, goal, h, on_the_way);
   memory.command = command;
   for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
   const NewtonRules forward = step_rules(model, effort);
-  if (moves && h < ahead.h) return search_step(model, memory, forward, goal, Command(memory.command), h, ahead, state);
-  memory.inverse.begin(model, state, goal, h);
   NewtonRules rules = forward;
   rules.inverse = &memory.inverse;
   StepReport report = step_by(rules, memory, memory.command, h, state);
-  if (accepted(report.status) || rules.fixed || !moves) return report;
-  StepReport searched = search_step(model, memory, forward, goal, Command(memory.command), h, {}, state);
-  searched.newton += report.newton;
-  searched.times += report.times;
-  searched.contact.sweeps += report.contact.sweeps;
-  searched.contact.newton += report.contact.newton;
-  return searched;
+  if (accepted(report.status) || rules.fixed || model.scene.analysis != Analysis::dynamic) return report;
+  memory.inverse.begin(model, state, goal, h, on_the_way);
+  const StepReport searched = search_step(model, memory, forward, memory.command, h, state);
+  StepReport own = accepted(searched.status) ? searched : report;
+  own.newton = report.newton + searched.newton;
+  own.times = report.times;
+  own.times += searched.times;
+  own.contact.sweeps = report.contact.sweeps + searched.contact.sweeps;
+  own.contact.newton = report.contact.newton + searched.contact.newton;
+  return own;
 }
 
 StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,

@@ -40,6 +40,8 @@ class Linearization {
   ContactRoom& contacts() { return contacts_; }
   /// [m] how far the forces of contacts are from what their laws ask for.
   double contact_error() const { return contact_forces_.error(*context_, *iterate_, contacts_); }
+  const ContactRoom& contacts() const { return contacts_; }
+  ContactForces::Worst worst_contact() const { return contact_forces_.worst(*context_, *iterate_, contacts_); }
   /// Of contacts at the iterate, and of all that was solved for them since they were last `forgotten`.
   ContactReport contact_report() const;
   void forget() {

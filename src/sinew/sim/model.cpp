@@ -336,6 +336,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   for (EffectorModel& effector : model.effectors) effector.start = effector_value(model, start, effector);
   warn_of_units(model);
+  warn_of_tables(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();
   measure_bearing(model);

@@ -8,6 +8,7 @@
 #include "sinew/sim/assessment.hpp"
 #include "sinew/sim/rolling.hpp"
 #include "sinew/sim/step_ends.hpp"
+#include "sinew/sim/unbalanced.hpp"
 
 namespace sinew {
 
@@ -69,6 +70,19 @@ double LineSearch::shorten(const StepContext& context, State& iterate) {
   ++halvings_;
   advance_by(context, increment_, fraction_, iterate);
   return fraction_;
+}
+
+void ComingAndGoing::look(const std::vector<ContactState>& contacts) {
+  const bool first = pressed_.size() != contacts.size();
+  if (first) {
+    pressed_.assign(contacts.size(), 0);
+    turns_.assign(contacts.size(), 0);
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const char now = contacts[i].force.isZero(0.0) ? 0 : 1;
+    if (!first && now != pressed_[i]) ++turns_[i];
+    pressed_[i] = now;
+  }
 }
 
 Eigen::VectorXd measured(const Model& model, const Increment& increment) {
@@ -137,10 +151,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.detail = std::move(detail);
     if (contradicts(std::max(0.5 * report.violation, 10.0 * met))) return report;
     // Rows that once depended on each other may do so no longer by a hair: no force is large enough then.
-    const std::vector<Warning>& known = context.model.warnings;
-    const auto told = std::find_if(known.begin(), known.end(),
-                                   [](const Warning& own) { return own.code == "contradicting_commands"; });
-    if (told != known.end()) report.detail += (report.detail.empty() ? "" : "; ") + told->where + ": " + told->message;
+    const std::string known = known_contradiction(context.model);
+    report.detail += report.detail.empty() && !known.empty() ? known.substr(2) : known;
     return report;
   };
   const auto complete = [&] {
@@ -181,6 +193,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     return report;
   };
   memory.search.begin();
+  memory.contacts.begin();
   here.forget();
   memory.passage = {};
   double contradiction = 0.0, left_off = INFINITY;
@@ -204,6 +217,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       if (rules.inverse) rules.inverse->take(-back, context.model, context.command);
       here.evaluate(context, iterate.state, report.times);
     }
+    if (!rules.fixed) memory.contacts.look(iterate.state.contacts);
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
     report.violation = here.violation();
     if (!here.finite() || !std::isfinite(iterate.t)) {
@@ -240,7 +254,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     steady = off < kContracts * left_off ? steady + 1 : 0;
     left_off = off;
     const int limit = steady >= kSteady && !context.model.pairs.empty() ? kPatience * rules.limit : rules.limit;
-    if (!rules.fixed && report.newton >= limit) return fail(Status::max_iterations, "");
+    if (!rules.fixed && report.newton >= limit)
+      return fail(Status::max_iterations,
+                  most_unbalanced(context, here, iterate.state, converged.allowed, memory.contacts.turns()));
     if (!here.reduced().redundant.empty() && report.newton > 1) {  // forces are balanced, and rows do not get nearer
       const bool balanced_forces = here.largest() <= 1e-6 * here.scale();
       const bool stays = contradiction > 0.0 && report.violation > 0.999 * contradiction;

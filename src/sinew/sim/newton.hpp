@@ -60,6 +60,19 @@ class LineSearch {
 
 struct Modes;
 
+/// Which contacts come and go from one iterate to the next.
+class ComingAndGoing {
+ public:
+  void begin() { pressed_.clear(); }
+  void look(const std::vector<ContactState>& contacts);
+  /// How often each has come or gone.
+  const std::vector<int>& turns() const { return turns_; }
+
+ private:
+  std::vector<char> pressed_;
+  std::vector<int> turns_;
+};
+
 /// What a Workspace keeps.
 struct Memory {
   Memory(const Model& model, int threads) : crew(threads), context(model), ahead(model), here(crew), there(crew) {}
@@ -68,6 +81,7 @@ struct Memory {
   Linearization here, there;
   Increment increment, change;
   LineSearch search;
+  ComingAndGoing contacts;
   Iterate iterate;
   Command command;
   Inverse inverse;

@@ -19,6 +19,8 @@ struct RodParts {
   std::vector<int> border, order;  ///< of attachments: what each belongs to; sorted by link
   std::vector<int> slides;         ///< unknown of each
   rod::Equations equations;
+  double largest = 0.0;  ///< [N] largest unbalanced force of its strains, by their lever arms
+  int largest_at = 0;    ///< section
 };
 
 /// Rods at an iterate: the coupled problem, but for the volumes' compliance and free motion. With rows c(z, q, x) = 0

@@ -140,6 +140,7 @@ void RodRows::measure() {
   const rod::Rod& rod = *own_.shape.rod;
   const int nb = rod.base_coordinates();
   const Eigen::VectorXd& q = iterate_.rods[number_].q;
+  own_.largest = 0.0;
   for (int i = 0; i < rod.count(); ++i) {
     const rod::Section& section = rod.sections[i];
     linalg::Vector<Eigen::Dynamic> elastic;
@@ -147,10 +148,14 @@ void RodRows::measure() {
     for (std::size_t c = 0; c < section.modes.size(); ++c) {
       const auto at = static_cast<Eigen::Index>(c);
       const double arm = lever(rod, section, section.modes[c]);
-      reduced_.largest = std::max(reduced_.largest, std::abs(own_.equations.r[nb + rod.first[i] + at]) / arm);
+      if (const double left = std::abs(own_.equations.r[nb + rod.first[i] + at]) / arm; !(left <= own_.largest)) {
+        own_.largest = left;
+        own_.largest_at = i;
+      }
       reduced_.scale = std::max(reduced_.scale, std::abs(elastic[at]) / arm);
     }
   }
+  reduced_.largest = std::max(reduced_.largest, own_.largest);
 }
 
 void RodRows::finish() {

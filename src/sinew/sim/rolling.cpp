@@ -15,7 +15,9 @@ using contact::Simplex;
 
 namespace {
 
-constexpr double kCoarse = 0.01;   ///< of the way rolled in a step
+constexpr double kCoarse = 0.01;  ///< of the way rolled in a step
+constexpr double kMatters =
+    1e-7;  ///< of the scene's size: what is off by less in a step is nothing in ten thousand steps
 constexpr double kRolls = 1e-3;    ///< of how far the surfaces turn: what comes with them does not roll
 constexpr double kSticks = 0.999;  ///< of the friction there is
 constexpr double kStands = 1e-3;   ///< sine of the tilt below which the lowest point of a rim is chance
@@ -84,7 +86,9 @@ std::vector<Warning> assess_rolling(const StepContext& context, const State& nex
                  of_b = rolled(own.b, now.placed(own.b), touch.nearest.b, touch.point_b, before.normal, n, start, now);
     const auto along = [&n](const Vec3& v) { return (v - v.dot(n) * n).norm(); };
     const double way = along(of_a.way - of_b.way), off = along(of_a.off - of_b.off);
-    if (!(way > kRolls * std::max(of_a.turned, of_b.turned)) || !(off > worst * way)) continue;
+    if (!(way > kRolls * std::max(of_a.turned, of_b.turned)) ||
+        !(off > std::max(worst * way, kMatters * context.model.size)))
+      continue;
     worst = off / way;
     pair = own.pair;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/error/digits.hpp"
+#include "sinew/sim/assessment.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/inverse.hpp"
 #include "sinew/sim/modal.hpp"
@@ -76,7 +77,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   const int first = std::max(place.halvings(), std::min(state.halvings, place.most));
   // With contacts an equilibrium has been looked for along parts of the step already.
   const int last = equilibrium && !inverse && !model.pairs.empty() ? first : place.most;
-  Goal goal, ahead;
+  Goal goal, on_the_way;
   StepReport earlier;
   // (Who steers may get a step that is stuck going again.)
   int spent = told.command || told.goal ? 0 : state.spent;
@@ -87,7 +88,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   };
   if (place.parts > 0 && spent > most) {
     earlier.status = Status::max_iterations;
-    earlier.detail = has_cost(spent);
+    earlier.detail = has_cost(spent) + known_contradiction(model);
     return earlier;
   }
   for (int halvings = first; halvings <= last; ++halvings) {
@@ -107,10 +108,14 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
         goal = *told.goal;
       else
         goal_at(model, time, goal);
-      if (!told.goal && part < h) goal_at(model, state.time + h, ahead);
-      report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
-                           : inverse_step(model, workspace, goal, command, part, state, effort,
-                                          part < h ? Ahead{h, told.goal ? &goal : &ahead} : Ahead{});
+      // (So is one of the target.)
+      if (!lands && !equilibrium) {
+        if (!told.goal) goal_at(model, to, on_the_way);
+        on_the_way = part_of_goal(model, state, told.goal ? goal : on_the_way, part / left);
+      }
+      report = equilibrium
+                   ? inverse_equilibrium(model, workspace, goal, command, time, state)
+                   : inverse_step(model, workspace, goal, command, part, state, effort, lands ? nullptr : &on_the_way);
     } else {
       report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
                            : step(model, workspace, command, part, state, effort);

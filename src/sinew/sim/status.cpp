@@ -42,8 +42,9 @@ std::string_view explain(Status status) {
       return "The step made the number of linearisations asked for; its residual says how far that is from "
              "equilibrium.";
     case Status::max_iterations:
-      return "Newton did not reach its tolerance. Try smaller steps, a slower motion or less load, more iterations "
-             "(newton.limit), or, in motion, more stiffness damping (rayleigh).";
+      return "Newton did not reach its tolerance, nor did it in parts of the step. Try a slower motion or less load, "
+             "in "
+             "motion more stiffness damping (rayleigh), or a finer mesh or more sections at the place that is named.";
     case Status::singular:
       return "A matrix could not be factored: nothing holds a motion (a part of a mesh that is not connected, a "
              "massless rod that no coupling ties), or the body has collapsed. Look at the last picture; try a smaller "

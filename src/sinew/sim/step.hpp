@@ -86,10 +86,11 @@ struct Bound {
 /// What came of the scene's targets in a step.
 struct Aim {
   enum class Outcome {
-    none,     ///< it had none
-    reached,  ///< all, within their tolerances
-    limited,  ///< limits of motors are in the way
-    nearest   ///< none is: this is the nearest that these motors can do, or have done so far in one step
+    none,       ///< it had none
+    reached,    ///< all, within their tolerances
+    limited,    ///< limits of motors are in the way
+    nearest,    ///< none is: this is the nearest that these motors can do, or have done so far in one step
+    on_the_way  ///< of a part of a step, which made for a place on the way
   };
   Outcome outcome = Outcome::none;
   double farthest = 0.0;       ///< [-] largest error of a target over its tolerance

@@ -185,9 +185,10 @@ double inertia_of(const StepContext& context) {
 
 Convergence convergence_of(const Model& model, const Linearization& here, double stiffness) {
   const double tolerance = model.scene.newton.tolerance;
-  const double rounding = 1e-14 * stiffness * model.size;
-  const bool forces = here.largest() <= tolerance * here.scale() + rounding;
-  return {forces && here.violation() <= tolerance * model.size, forces && here.largest() > tolerance * here.scale()};
+  const double floor = 1e-14 * stiffness * model.size, allowed = tolerance * here.scale() + floor;
+  const bool forces = here.largest() <= allowed;
+  return {forces && here.violation() <= tolerance * model.size, forces && here.largest() > tolerance * here.scale(),
+          allowed};
 }
 
 }  // namespace sinew

@@ -54,6 +54,7 @@ double inertia_of(const StepContext& context);
 struct Convergence {
   bool met = false;
   bool at_floor = false;  ///< forces meet their floor, not the tolerance
+  double allowed = 0.0;   ///< [N] largest unbalanced force that meets it
 };
 Convergence convergence_of(const Model& model, const Linearization& here, double stiffness);
 

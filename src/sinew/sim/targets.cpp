@@ -90,26 +90,20 @@ void effector_errors(const Model& model, const State& state, const Goal& goal, E
   }
 }
 
-Goal part_of_goal(const Model& model, const State& before, const State& free, const Goal& goal, double part) {
-  Eigen::VectorXd start, end;
-  effector_errors(model, before, goal, start);
-  effector_errors(model, free, goal, end);
-  Goal nearer = goal;
+Goal part_of_goal(const Model& model, const State& from, const Goal& goal, double part) {
+  Goal there = goal;
   for (const EffectorModel& own : model.effectors) {
     const OutputModel& output = output_of(model, own);
-    const auto off = end.segment(own.first, own.size), was = start.segment(own.first, own.size);
-    auto at = nearer.at.segment(own.first, own.size);
-    if (output.pair >= 0) {
-      at += (1.0 - part) * off;
-      continue;
+    auto at = there.at.segment(own.first, own.size);
+    const Eigen::VectorXd now = effector_value(model, from, own);
+    if (output.quantity == Quantity::orientation) {
+      const rod::Mat3 turned = lie::exp(Vec3(now));
+      at = lie::log(lie::exp(part * lie::log(lie::exp(Vec3(at)) * turned.transpose())) * turned);
+    } else {
+      at = now + part * (at - now);
     }
-    const Eigen::VectorXd change = part * part * (was + (off - was) / part);  // of the error, from `free` on
-    if (output.quantity == Quantity::orientation)
-      at = lie::log(lie::exp(-change) * output_axes(model, free, output) * output.upright.transpose());
-    else
-      at += off - change;
   }
-  return nearer;
+  return there;
 }
 
 double error_of(const EffectorModel& own, const Eigen::VectorXd& errors) {
@@ -180,6 +174,9 @@ std::string describe(const Model& model, const Aim& aim) {
       break;
     case Aim::Outcome::nearest:
       text = "nearest";
+      break;
+    case Aim::Outcome::on_the_way:
+      text = "on the way";
       break;
   }
   list("dropped ", aim.dropped);

@@ -42,11 +42,9 @@ Eigen::VectorXd effector_value(const Model& model, const State& state, const Eff
 inline constexpr double kPerGap = 100.0;  // [N/m]
 void effector_errors(const Model& model, const State& state, const Goal& goal, Eigen::VectorXd& errors);
 
-/// What the first part of a step makes for (`part` < 1 of it) so that the whole of it would end at the goal: from rest
-/// or in motion, by an even acceleration, a = 2 (goal - x - v h) / h^2, whose force does not grow as parts get shorter.
-/// `free` is where that part ends by itself, from `before`: goal' = free + part^2 (goal - before - (free - before) /
-/// part). Forces between two change in proportion: goal' = free + part (goal - free).
-Goal part_of_goal(const Model& model, const State& before, const State& free, const Goal& goal, double part);
+/// The place that is a part of the way from where effectors are to their goals: straight, by an even turn, by forces
+/// that change in proportion.
+Goal part_of_goal(const Model& model, const State& from, const Goal& goal, double part);
 
 /// How far off one is in the components that matter [SI].
 double error_of(const EffectorModel& own, const Eigen::VectorXd& errors);
