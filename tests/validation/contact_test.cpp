@@ -216,6 +216,26 @@ TEST(Contact, WhatStartsInTheGroundIsLiftedGently) {
   EXPECT_LT(last.bodies[0].v.norm(), 1e-3);
 }
 
+/// A coin that falls on its edge comes to lie flat. Its lowest point jumped round the rim as rounding tipped it.
+TEST(Contact, CoinsComeToLieFlat) {
+  for (const double friction : {0.0, 0.3}) {
+    for (const double h : {0.02, 0.01}) {
+      SCOPED_TRACE(testing::Message() << "friction " << friction << ", step " << h);
+      Scene scene = on_floor(h, 0.8, friction);
+      RigidBody coin;
+      coin.shape = CylinderShape{12 * mm, 6 * mm};
+      coin.density = 630.0;
+      coin.pose = {Vec3(60.0, 10.0, 0.0) * std::numbers::pi / 180.0, Vec3(0, 0, 20 * mm)};
+      coin.velocity = Vec3(0.3, 0.1, 0.0);
+      coin.spin = Vec3(2.0, 0.0, 8.0);
+      scene.bodies.emplace_back("coin", coin);
+      const State end = end_of(build(scene, no_mesh));
+      EXPECT_NEAR(end.bodies[0].p.z(), 3 * mm, 1e-6);
+      EXPECT_NEAR(std::abs(end.bodies[0].R(2, 2)), 1.0, 1e-6);
+    }
+  }
+}
+
 /// Without gravity a fiftieth of the depth in a step, and of that a part in a part of the step.
 TEST(Contact, PartsOfStepsLiftAtTheSameSpeed) {
   Scene scene = on_floor(0.005, 1.0, 0.5);

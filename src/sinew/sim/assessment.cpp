@@ -10,6 +10,7 @@
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/sliding_rods.hpp"
+#include "sinew/sim/step_ends.hpp"
 #include "sinew/sim/touched_rods.hpp"
 #include "sinew/sim/unbalanced.hpp"
 #include "sinew/sim/work.hpp"
@@ -353,6 +354,7 @@ bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& ro
 
 std::string contact_adds_energy(const StepContext& context, const State& next) {
   constexpr double kGain = 1e-3;
+  constexpr double kAtRest = 1e-6;  // of weight times size: what all but rests has next to no energy to gain from
   const Model& model = context.model;
   if (context.rate == 0.0 || next.contacts.empty()) return {};
   // Most steps are done with here: nothing that is loose has become faster, but by falling.
@@ -362,7 +364,9 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   const EnergyBalance from = energy_balance(model, context.start), to = energy_balance(model, next);
   const double gain = to.total() - from.total() - (next.energies.work_bound - context.start.energies.work_bound);
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
-  if (!(gain > kGain * size) || !(size > 1e-14 * model.bearing * model.size)) return {};
+  const double weight = inertia_of(context) / context.rate / context.rate * context.gravity.norm();
+  if (!(gain > std::max(kGain * size, kAtRest * weight * model.size)) || !(size > 1e-14 * model.bearing * model.size))
+    return {};
   return "contacts have added " + three_digits(gain) + " J, " + three_digits(gain / size) +
          " of the kinetic and elastic energy; the hardest is that of " + hardest_contact(model, next);
 }
