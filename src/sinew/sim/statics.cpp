@@ -90,6 +90,26 @@ void stop(State& state) {
   }
 }
 
+/// What has moved most from one state to another, and how far [m].
+struct Moved {
+  std::string name;
+  double far = 0.0;
+};
+Moved moved_most(const Model& model, const State& from, const State& to) {
+  Moved most;
+  const auto take = [&most](const std::string& name, const auto& a, const auto& b) {
+    const double far = a.cols() > 0 ? (b - a).colwise().norm().maxCoeff() : 0.0;
+    if (far > most.far) most = {name, far};
+  };
+  for (std::size_t i = 0; i < to.solids.size(); ++i)
+    take("solids." + model.solids[i].name, from.solids[i].x, to.solids[i].x);
+  for (std::size_t i = 0; i < to.rods.size(); ++i)
+    take("rods." + model.rods[i].name, from.rods[i].masses, to.rods[i].masses);
+  for (std::size_t i = 0; i < to.bodies.size(); ++i)
+    take("bodies." + model.bodies[i].name, from.bodies[i].p, to.bodies[i].p);
+  return most;
+}
+
 // Pseudo-transient continuation (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35, 1998). Implicit Euler's steps of
 // length tau, each from rest,
 //     M (x - x_k) / tau^2 + D (x - x_k) / tau + r(x) = 0,
@@ -98,6 +118,8 @@ void stop(State& state) {
 /// The equilibrium at t that a state moves to; not accepted where none is found.
 Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, int most_iterations) {
   constexpr double kFirst = 0.1, kLeast = 1e-6;  // of the scene's step
+  constexpr double kFarthest = 0.02;             // of the scene's size: a longer step may end in another valley
+  constexpr double kRests = 1e-6;                // of the scene's size: what moves less in a step is nearly there
   constexpr int kEasy = 4;
   const Model& model = memory.context.model;
   const double h = model.scene.time.step;
@@ -124,16 +146,18 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     add_effort(report, spent);
     return report;
   };
+  const auto far = [&](const State& next) { return moved_most(model, state, next).far > kFarthest * model.size; };
   double most = INFINITY;  // [s] that has not failed lately
   int made = 0, next_look = 1;
   for (double tau = kFirst * h; tau > kLeast * h && spent.newton < most_iterations;) {
     StepReport report = make(1.0 / tau, tau, model.scene.newton.limit);
-    if (!accepted(report.status)) {
+    if (!accepted(report.status) || (arrived && far(reached.at.state))) {
       reached.report = report;
       most = 0.5 * tau;
       tau *= 0.25;
       continue;
     }
+    const bool rests = arrived && moved_most(model, state, reached.at.state).far < kRests * model.size;
     state = reached.at.state;
     state.time = ramp.time(t);
     stop(state);
@@ -141,10 +165,11 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     ++made;
     tau = std::min(tau * std::clamp(2.0 * kEasy / std::max(report.newton, 1), 0.5, 3.0), most);
     most *= 1.2;
-    if (report.newton > kEasy || made < next_look) continue;
+    if ((report.newton > kEasy && !rests) || made < next_look) continue;
     next_look = 2 * made;
     reached.report = make(0.0, h, std::min(model.scene.newton.limit, kMostIterations));
-    if (accepted(reached.report.status)) break;
+    if (accepted(reached.report.status) && !far(reached.at.state)) break;
+    reached.report.status = Status::max_iterations;
   }
   reached.at.state.time = ramp.time(t);
   reached.report.newton = spent.newton;
@@ -152,34 +177,37 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
   return reached;
 }
 
-/// What has moved most from one state to another, and how far [m].
-struct Moved {
-  std::string name;
-  double far = 0.0;
+/// [J] What is set free from one equilibrium to the next of a step, beyond what friction may take where it ends, and
+/// the elastic energy.
+struct SetFree {
+  double free = 0.0, elastic = 0.0;
 };
-Moved moved_most(const Model& model, const State& from, const State& to) {
-  Moved most;
-  const auto take = [&most](const std::string& name, const auto& a, const auto& b) {
-    const double far = a.cols() > 0 ? (b - a).colwise().norm().maxCoeff() : 0.0;
-    if (far > most.far) most = {name, far};
-  };
-  for (std::size_t i = 0; i < to.solids.size(); ++i)
-    take("solids." + model.solids[i].name, from.solids[i].x, to.solids[i].x);
-  for (std::size_t i = 0; i < to.rods.size(); ++i)
-    take("rods." + model.rods[i].name, from.rods[i].masses, to.rods[i].masses);
-  for (std::size_t i = 0; i < to.bodies.size(); ++i)
-    take("bodies." + model.bodies[i].name, from.bodies[i].p, to.bodies[i].p);
-  return most;
+SetFree set_free(const Model& model, const State& from, const State& to) {
+  const EnergyBalance before = energy_balance(model, from), after = energy_balance(model, to);
+  double rubbed = 0.0;
+  for (const ContactState& own : to.contacts)
+    rubbed += (own.force - own.force.dot(own.normal) * own.normal).norm() * own.slip;
+  for (const int point : model.rubbing)
+    rubbed += std::abs(to.points[point].friction * (to.points[point].s - from.points[point].s));
+  return {to.energies.work - from.energies.work - (after.total() - before.total()) - rubbed,
+          std::max(before.elastic, after.elastic)};
+}
+constexpr double kFree = 1e-3;  ///< of the elastic energy: what steps of a load leave undecided
+
+/// Whether a step between equilibria with contacts has gone over to others than those that go on from where it began:
+/// down, or up, where nothing brings it.
+bool jumped(const Model& model, const State& from, const State& to) {
+  constexpr double kNear = 0.01;    // of the scene's size
+  constexpr double kBeyond = 0.03;  // of the elastic energy: the work of a long, curved way is not known better
+  if (moved_most(model, from, to).far <= kNear * model.size) return false;
+  const SetFree own = set_free(model, from, to);
+  return std::abs(own.free) > kBeyond * own.elastic;
 }
 
-/// Warning `snapped` where more energy was set free on the way between two equilibria than steps of a load leave
-/// undecided.
+/// Warning `snapped` where energy was set free on the way between two equilibria.
 std::optional<Warning> snapped(const Model& model, const State& from, const State& to) {
-  constexpr double kFree = 1e-3;  // of the elastic energy
-  const EnergyBalance before = energy_balance(model, from), after = energy_balance(model, to);
-  const double free = to.energies.work - from.energies.work - (after.total() - before.total());
-  const double size = std::max(before.elastic, after.elastic);
-  if (!(free > kFree * size)) return {};
+  const auto [free, size] = set_free(model, from, to);
+  if (!(free > kFree * size) || !(free > 1e-14 * model.bearing * model.size)) return {};  // (rounding is none)
   const Moved most = moved_most(model, from, to);
   return Warning{.code = "snapped",
                  .where = most.name,
@@ -338,7 +366,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
   std::vector<Warning> snaps;
-  if (!sound(end)) {
+  if (!sound(end) || (touches && jumped(model, state, end.at.state))) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
       Reached next = path_step(model, memory, ramp, on);
@@ -351,7 +379,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart && spent.newton < iteration_limit;) {
       Reached next = go(on.state, std::min(on.t + part, 1.0), rules);
       add_effort(next.report, spent);
-      if (!sound(next)) {
+      if (!sound(next) || jumped(model, on.state, next.at.state)) {
         part *= 0.5;
         if (part >= kSmallestPart) continue;
         part = kSettledPart;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace sinew {
 
@@ -42,7 +43,9 @@ bool stopped(const Model& model, int solid, int other) {
 
 std::optional<double> pierced_at(const Vec3& p, const Vec3& q, const Corners& t) {
   const double from = volume(t[0], t[1], t[2], p), to = volume(t[0], t[1], t[2], q);
-  if (from * to >= 0.0) return std::nullopt;
+  // (Of what lies in one plane rounding would say that it crosses.)
+  const double size = std::max({(t[1] - t[0]).norm(), (t[2] - t[0]).norm(), (q - p).norm(), (p - t[0]).norm()});
+  if (from * to >= 0.0 || std::min(std::abs(from), std::abs(to)) < 1e-12 * size * size * size) return std::nullopt;
   const double a = volume(p, q, t[0], t[1]), b = volume(p, q, t[1], t[2]), c = volume(p, q, t[2], t[0]);
   const bool inside = (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
   return inside ? std::optional(from / (from - to)) : std::nullopt;
