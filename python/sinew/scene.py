@@ -78,6 +78,8 @@ class Scene(SceneMethods):
     gravity: The acceleration of free fall [m/s^2]; for example [0, -9.81, 0]; if left out [0.0, 0.0, 0.0].
     analysis: What is computed: the motion (dynamic), equilibria over time (quasi_static) or at the end (static), or
         natural frequencies at the start (modal); for example "static"; if left out "dynamic".
+    snap: Where a quasi_static run with contacts finds no equilibrium that goes on from the one before: follow what lets
+        go to the next one, with a warning, or stop; for example "stop"; if left out "follow".
     modes: The number of modes of a modal analysis; for example 6; if left out 6.
     newton: How a step is solved: `converged`, a number of linearisations (1 is a linearised step), or a map; for
         example "converged".
@@ -109,6 +111,7 @@ class Scene(SceneMethods):
     time: Time | Tree | None = field(default=None, metadata={"kinds": ("Time",)})
     gravity: Vector | None = None
     analysis: Literal["dynamic", "quasi_static", "static", "modal"] | None = None
+    snap: Literal["follow", "stop"] | None = None
     modes: int | None = None
     newton: Literal["converged"] | int | Newton | Tree | None = field(default=None, metadata={"kinds": ("Newton",)})
     view: View | Tree | None = field(default=None, metadata={"kinds": ("View",)})

@@ -292,6 +292,7 @@ targets:
   tip: {at: {times: [0, 1], values: [[0.1, 0, 0], [90 mm, 0, 3 cm]]}, weights: [1, 1, 0], tolerance: 1 mm}
   nail: {at: [0, 0, 20 deg], tolerance: 1 deg}
   bend: {at: external, strain: bending_z}
+snap: stop
 )";
 
 }  // namespace sinew::io

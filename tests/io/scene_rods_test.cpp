@@ -39,6 +39,8 @@ TEST(SceneRods, ReadsTheAnalysis) {
   EXPECT_EQ(parse(full_scene).modes, Scene{}.modes);
   EXPECT_EQ(parse(full_scene, {"analysis=dynamic"}).analysis, Analysis::dynamic);
   EXPECT_EQ(parse(full_scene, {"analysis=quasi_static"}).analysis, Analysis::quasi_static);
+  EXPECT_EQ(parse(full_scene).snap, Snap::follow);
+  EXPECT_EQ(parse(full_scene, {"snap=stop"}).snap, Snap::stop);
   EXPECT_EQ(parse(full_scene, {"analysis=modal", "modes=12"}).analysis, Analysis::modal);
   EXPECT_EQ(parse(full_scene, {"modes=12"}).modes, 12);
 }

@@ -63,6 +63,18 @@ TEST(Snap, the_energy_set_free_is_what_damped_motion_dissipates) {
   EXPECT_NEAR(rest.last("mid.z"), run.last("mid.z"), 1e-5);
 }
 
+TEST(Snap, a_run_ends_there_if_it_is_told_to_stop) {
+  const RecordedRun run = arch("arch_snaps", {"snap=stop"}), followed = arch("arch_snaps");
+  EXPECT_FALSE(run.done());
+  EXPECT_EQ(run.failure().status, Status::path_lost);
+  EXPECT_EQ(run.failure().detail.find("rods.arch: no equilibrium goes on"), 0U) << run.failure().detail;
+  EXPECT_GT(run.last("mid.z"), 0.0);  // before the snap
+  const Warning* told = followed.warning("snapped");
+  ASSERT_TRUE(told);
+  EXPECT_LE(run.steps.back().time, told->time);
+  EXPECT_GT(run.steps.back().time, told->time - 0.05);
+}
+
 TEST(Snap, nothing_is_told_where_nothing_lets_go) {
   const RecordedRun run = arch("arch_snaps", {"loads.push.factor={times: [0, 1], values: [0, 0.02]}"});
   ASSERT_TRUE(run.done()) << run.why();

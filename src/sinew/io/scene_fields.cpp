@@ -105,6 +105,11 @@ const Type<Scene>& scene_type() {
                                         {"quasi_static", Analysis::quasi_static},
                                         {"static", Analysis::statics},
                                         {"modal", Analysis::modal}})),
+        field<Scene>({"snap", optional,
+                      "where a quasi_static run with contacts finds no equilibrium that goes on from the one before: "
+                      "follow what lets go to the next one, with a warning, or stop",
+                      "stop"},
+                     &Scene::snap, word_of<Snap>({{"follow", Snap::follow}, {"stop", Snap::stop}})),
         field<Scene>({"modes", optional, "the number of modes of a modal analysis", "6"}, &Scene::modes,
                      whole_number(1, 1000)),
         field<Scene>(

@@ -439,6 +439,10 @@ struct Contact {
 /// past limit points too; `modal`: natural frequencies and modes about the equilibrium at the start.
 enum class Analysis { dynamic, quasi_static, statics, modal };
 
+/// What an equilibrium with contacts does where none goes on from it: `follow` what lets go to the next one, with a
+/// warning; `stop`.
+enum class Snap { follow, stop };
+
 struct Time {
   double step = 0.01;     ///< [s] > 0
   double duration = 1.0;  ///< [s] >= 0
@@ -468,6 +472,7 @@ struct Scene {
   Time time;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   Analysis analysis = Analysis::dynamic;
+  Snap snap = Snap::follow;
   int modes = 6;  ///< of a modal analysis
   Newton newton;
   View view;

@@ -386,7 +386,16 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
         next = settle(memory, ramp, on.state, std::min(on.t + part, 1.0), iteration_limit - spent.newton);
         add_effort(next.report, spent);
         if (!sound(next)) break;
-        if (std::optional<Warning> snap = snapped(model, on.state, next.at.state)) snaps.push_back(std::move(*snap));
+        if (std::optional<Warning> snap = snapped(model, on.state, next.at.state)) {
+          if (model.scene.snap == Snap::stop) {
+            end.report.status = Status::path_lost;
+            end.report.detail = snap->where + ": " + snap->message + "; `snap: stop`";
+            end.report.newton = spent.newton;
+            end.report.times = spent.times;
+            return {state, end.report};
+          }
+          snaps.push_back(std::move(*snap));
+        }
       }
       on = next.at;
       part *= 2.0;
