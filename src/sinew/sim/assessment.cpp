@@ -372,11 +372,8 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
 }
 
 std::string known_contradiction(const Model& model) {
-  const Warning* told = nullptr;
-  for (const Warning& own : model.warnings) {
-    if (own.code == "contradicting_commands") told = &own;
-  }
-  return told ? "; " + told->where + ": " + told->message : "";
+  const Warning* told = find_warning(model.warnings, "contradicting_commands");
+  return told ? told->where + ": " + told->message : "";
 }
 
 std::string describe_contradiction(const Model& model, const RedundantRows& rows, const Eigen::VectorXd& c) {

@@ -35,8 +35,8 @@ bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& ro
 /// to.)
 std::string contact_adds_energy(const StepContext& context, const State& next);
 
-/// "; actuators.a, actuators.b: what they are told contradicts ...": what is known of commands that contradict each
-/// other, to be added to why a step failed. Empty if there are none.
+/// "actuators.a, actuators.b: what they are told contradicts ...": what is known of commands that contradict each other
+/// (`contradicting_commands`). Empty if there are none.
 std::string known_contradiction(const Model& model);
 
 /// "actuators.a, actuators.b contradict each other by 2 mm; drive one of them by force ...".

@@ -8,14 +8,14 @@
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/placement.hpp"
 
-namespace sinew {
+namespace sinew::building {
 
 namespace {
 
 /// Of its range over the run, by which a table may go beyond its values at the ends of a step within that step.
 constexpr double kUnseen = 0.05;
-/// [rad] by which a frame may turn in a step.
-constexpr double kMostTurn = 0.25 * std::numbers::pi;
+/// [deg] by which a frame may turn in a step, and by which it does in one that is recommended.
+constexpr double kMostTurn = 45.0, kGoodTurn = 20.0;
 
 /// The time at which a table goes furthest beyond its values at both ends of a step, and by how much of its range.
 struct Excursion {
@@ -50,7 +50,7 @@ Excursion between_steps(const Time& time, const std::vector<double>& times,
 
 }  // namespace
 
-void building::warn_of_tables(Model& model) {
+void warn_of_tables(Model& model) {
   const Scene& scene = model.scene;
   if (scene.analysis != Analysis::dynamic && scene.analysis != Analysis::quasi_static) return;
   const auto look = [&](const std::string& where, const std::vector<double>& times, const auto& at) {
@@ -95,17 +95,17 @@ void building::warn_of_tables(Model& model) {
       if (times[i - 1] < scene.time.duration)
         most = std::max(most, turn * std::min(1.0, scene.time.step / (times[i] - times[i - 1])));
     }
-    if (most <= kMostTurn + 1e-9) continue;
     const double degrees = 180.0 / std::numbers::pi * most;
+    if (degrees <= kMostTurn * (1.0 + 1e-9)) continue;
     model.warnings.push_back(
         {.code = "between_steps",
          .where = where,
          .message = "it turns by " + three_digits(degrees) + " degrees in a step, which sees where it is at its ends",
-         .remedy = "take steps of " + three_digits(scene.time.step * 20.0 / degrees) + " s at most",
+         .remedy = "take steps of " + three_digits(scene.time.step * kGoodTurn / degrees) + " s at most",
          .value = degrees,
-         .limit = 45.0,
+         .limit = kMostTurn,
          .unit = "deg"});
   }
 }
 
-}  // namespace sinew
+}  // namespace sinew::building

@@ -80,6 +80,14 @@ bool linearize_step(Memory& memory, const State& start, const Command& command, 
   return solve_there(memory, solid::Tangent::definite, times, steer);
 }
 
+/// Counts what a part of a search has cost.
+void add_effort(const StepReport& part, StepReport& whole) {
+  whole.newton += part.newton;
+  whole.times += part.times;
+  whole.contact.sweeps += part.contact.sweeps;
+  whole.contact.newton += part.contact.newton;
+}
+
 /// How commands lead to states.
 struct Way {
   std::function<StepResult(const Command&, const State& near)> make;  ///< a step or an equilibrium, from one near it
@@ -95,12 +103,7 @@ struct Found {
   StepReport spent;
   bool short_of = false;  ///< commands that would come nearer lead nowhere: no step or equilibrium was found
 
-  void add(const StepReport& report) {
-    spent.newton += report.newton;
-    spent.times += report.times;
-    spent.contact.sweeps += report.contact.sweeps;
-    spent.contact.newton += report.contact.newton;
-  }
+  void add(const StepReport& report) { add_effort(report, spent); }
   void tell(StepReport& report) const {
     report.newton = spent.newton;
     report.times = spent.times;
@@ -117,7 +120,7 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
   const bool moves = way.h > 0.0;
   double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
   bool settled = false, came_nearer = false;
-  for (int turn = 0; turn < (moves ? kMostTurnsInMotion : kMostTurns) && !settled; ++turn) {
+  for (int turn = 0; turn < (moves ? kMostTurnsInMotion : kMostTurns); ++turn) {
     inverse.reach = reach;
     const State& start = way.start ? *way.start : found.at.next;
     const bool ok = linearize_at(memory, start, found.at.next, found.told, moves ? way.h : way.time - start.time,
@@ -202,14 +205,10 @@ StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& go
   StepReport report = step_by(rules, memory, memory.command, h, state);
   if (accepted(report.status) || rules.fixed || model.scene.analysis != Analysis::dynamic) return report;
   memory.inverse.begin(model, state, goal, h, on_the_way);
-  const StepReport searched = search_step(model, memory, forward, memory.command, h, state);
-  StepReport own = accepted(searched.status) ? searched : report;
-  own.newton = report.newton + searched.newton;
-  own.times = report.times;
-  own.times += searched.times;
-  own.contact.sweeps = report.contact.sweeps + searched.contact.sweeps;
-  own.contact.newton = report.contact.newton + searched.contact.newton;
-  return own;
+  StepReport searched = search_step(model, memory, forward, memory.command, h, state);
+  if (accepted(searched.status)) std::swap(report, searched);
+  add_effort(searched, report);
+  return report;
 }
 
 StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const Goal& goal, const Command& command,

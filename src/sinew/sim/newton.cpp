@@ -151,8 +151,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.detail = std::move(detail);
     if (contradicts(std::max(0.5 * report.violation, 10.0 * met))) return report;
     // Rows that once depended on each other may do so no longer by a hair: no force is large enough then.
-    const std::string known = known_contradiction(context.model);
-    report.detail += report.detail.empty() && !known.empty() ? known.substr(2) : known;
+    if (const std::string known = known_contradiction(context.model); !known.empty())
+      report.detail += (report.detail.empty() ? "" : "; ") + known;
     return report;
   };
   const auto complete = [&] {

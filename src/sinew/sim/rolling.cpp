@@ -15,9 +15,8 @@ using contact::Simplex;
 
 namespace {
 
-constexpr double kCoarse = 0.01;  ///< of the way rolled in a step
-constexpr double kMatters =
-    1e-7;  ///< of the scene's size: what is off by less in a step is nothing in ten thousand steps
+constexpr double kCoarse = 0.01;   ///< of the way rolled in a step
+constexpr double kMatters = 1e-7;  ///< of the scene's size: less in a step is nothing in ten thousand steps
 constexpr double kRolls = 1e-3;    ///< of how far the surfaces turn: what comes with them does not roll
 constexpr double kSticks = 0.999;  ///< of the friction there is
 constexpr double kStands = 1e-3;   ///< sine of the tilt below which the lowest point of a rim is chance

@@ -88,7 +88,8 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   };
   if (place.parts > 0 && spent > most) {
     earlier.status = Status::max_iterations;
-    earlier.detail = has_cost(spent) + known_contradiction(model);
+    earlier.detail = has_cost(spent);
+    if (const std::string known = known_contradiction(model); !known.empty()) earlier.detail += "; " + known;
     return earlier;
   }
   for (int halvings = first; halvings <= last; ++halvings) {

@@ -146,18 +146,20 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     add_effort(report, spent);
     return report;
   };
-  const auto far = [&](const State& next) { return moved_most(model, state, next).far > kFarthest * model.size; };
+  // How far the last step has come, of the scene's size.
+  const auto way = [&] { return moved_most(model, state, reached.at.state).far / model.size; };
   double most = INFINITY;  // [s] that has not failed lately
   int made = 0, next_look = 1;
   for (double tau = kFirst * h; tau > kLeast * h && spent.newton < most_iterations;) {
     StepReport report = make(1.0 / tau, tau, model.scene.newton.limit);
-    if (!accepted(report.status) || (arrived && far(reached.at.state))) {
+    const double moved = accepted(report.status) && arrived ? way() : 0.0;
+    if (!accepted(report.status) || moved > kFarthest) {
       reached.report = report;
       most = 0.5 * tau;
       tau *= 0.25;
       continue;
     }
-    const bool rests = arrived && moved_most(model, state, reached.at.state).far < kRests * model.size;
+    const bool rests = arrived && moved < kRests;
     state = reached.at.state;
     state.time = ramp.time(t);
     stop(state);
@@ -168,7 +170,7 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     if ((report.newton > kEasy && !rests) || made < next_look) continue;
     next_look = 2 * made;
     reached.report = make(0.0, h, std::min(model.scene.newton.limit, kMostIterations));
-    if (accepted(reached.report.status) && !far(reached.at.state)) break;
+    if (accepted(reached.report.status) && way() <= kFarthest) break;
     reached.report.status = Status::max_iterations;
   }
   reached.at.state.time = ramp.time(t);

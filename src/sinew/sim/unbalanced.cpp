@@ -67,7 +67,7 @@ Largest largest_force(const Model& model, const Linearization& here) {
     take(own.largest, [&] {
       const rod::Section& section = model.rods[i].rod.sections[own.largest_at];
       return "rods." + model.rods[i].name + " from " + three_digits(1e3 * section.begin) + " to " +
-             three_digits(1e3 * (section.end)) + " mm";
+             three_digits(1e3 * section.end) + " mm";
     });
   }
   if (model.unknowns > 0) {
