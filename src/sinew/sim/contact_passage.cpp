@@ -98,22 +98,39 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   const Vec3 reach = contact::reach(shape_of(model, hard), Eigen::Matrix3d::Identity());
   double deepest = 0.0;
   const rod::Configuration& shape = now.rods[bent.number];
+  const auto local = [&](double s) -> Vec3 { return pose.R.transpose() * (rod::position(shape, s) - pose.p); };
+  const auto depth = [&](const Vec3& place, double radius) {
+    return -contact::nearest(contact::point_at(place, radius), contact::nearest_part(shape_of(model, hard), place)).gap;
+  };
   int section = -1;
   double away = 0.0;  // at least so far outside, along one axis of the shape's box, is the axis of that section
   for (std::size_t i = 0; i + 1 < rod.touching.size(); ++i) {
+    const double between = (rod.touching[i + 1] - rod.touching[i]) / kPlacesOfPiece;
+    double deepest_here = 0.0, there = 0.0;
     for (int k = 1; k < kPlacesOfPiece; ++k) {
-      const double s = std::lerp(rod.touching[i], rod.touching[i + 1], static_cast<double>(k) / kPlacesOfPiece);
+      const double s = rod.touching[i] + k * between;
       const double radius = rod::radius_at(rod.rod.profile, s);
       if (const int own = rod.rod.section_at(s); own != section) {
         section = own;
         away = outside(pose.R.transpose() * (shape.p[own] - pose.p), reach) - longest(shape, own);
       }
       if (away >= radius) continue;
-      const Vec3 local = pose.R.transpose() * (rod::position(shape, s) - pose.p);
-      if (outside(local, reach) >= radius) continue;
-      const Simplex part = contact::nearest_part(shape_of(model, hard), local);
-      deepest = std::max(deepest, -contact::nearest(contact::point_at(local, radius), part).gap);
+      const Vec3 place = local(s);
+      if (outside(place, reach) >= radius) continue;
+      const double own = depth(place, radius);
+      if (own > deepest_here) {
+        deepest_here = own;
+        there = s;
+      }
     }
+    if (deepest_here <= 0.0) continue;
+    // The lowest place of a sharp fold lies between those looked at: the vertex of the parabola through three of them.
+    const double radius = rod::radius_at(rod.rod.profile, there);
+    const double before = depth(local(there - between), radius), after = depth(local(there + between), radius);
+    const double bend = 2.0 * deepest_here - before - after, lean = after - before;
+    if (std::abs(lean) < bend)
+      deepest_here = std::max(deepest_here, depth(local(there + 0.5 * between * lean / bend), radius));
+    deepest = std::max(deepest, deepest_here);
   }
   return deepest;
 }

@@ -11,6 +11,7 @@
 #include "sinew/sim/modal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
+#include "sinew/sim/redundancy.hpp"
 #include "sinew/sim/statics.hpp"
 
 namespace sinew {
@@ -55,6 +56,20 @@ PlaceInStep place_in_step(const Scene& scene, double done) {
   return place;
 }
 
+/// Where what is asked for contradicts itself, that is why a step did not converge: parts of it contradict themselves
+/// by less than the tolerance, and Newton goes anywhere.
+void tell_contradiction(const Model& model, const Command& asked, StepReport& failed) {
+  if (accepted(failed.status) || failed.status == Status::inconsistent || failed.status == Status::passed_through)
+    return;
+  const bool contradicts = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const RedundantGroup& own) {
+    return contradiction_of(model, own, asked.actuators) > kContradiction * model.size;
+  });
+  if (!contradicts) return;
+  failed.status = Status::inconsistent;
+  const std::string known = known_contradiction(model);
+  if (failed.detail.find(known) == std::string::npos) failed.detail += (failed.detail.empty() ? "" : "; ") + known;
+}
+
 /// Iterations of Newton, in multiples of `newton.limit`, after which no shorter part of a step is tried, and how many
 /// of them each step of the grid pays back: one that is hard may cost much, not all of a run.
 constexpr int kMostOfStep = 64, kPaidByStep = 8;
@@ -86,10 +101,15 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     return "it came as far as " + three_digits(100.0 * (state.time - from) / h) + " % of the step in " +
            std::to_string(iterations) + " iterations";
   };
+  const auto asked = [&] {
+    Command wanted;
+    scene_command(model, state, to, wanted);
+    return wanted;
+  };
   if (place.parts > 0 && spent > most) {
     earlier.status = Status::max_iterations;
     earlier.detail = has_cost(spent);
-    if (const std::string known = known_contradiction(model); !known.empty()) earlier.detail += "; " + known;
+    tell_contradiction(model, told.command ? *told.command : asked(), earlier);
     return earlier;
   }
   for (int halvings = first; halvings <= last; ++halvings) {
@@ -141,6 +161,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
       break;
     }
   }
+  tell_contradiction(model, told.command ? *told.command : asked(), earlier);
   return earlier;
 }
 
