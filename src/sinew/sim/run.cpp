@@ -61,13 +61,12 @@ PlaceInStep place_in_step(const Scene& scene, double done) {
 void tell_contradiction(const Model& model, const Command& asked, StepReport& failed) {
   if (accepted(failed.status) || failed.status == Status::inconsistent || failed.status == Status::passed_through)
     return;
+  const std::string known = known_contradiction(model);
+  if (failed.detail.find(known) == std::string::npos) failed.detail += (failed.detail.empty() ? "" : "; ") + known;
   const bool contradicts = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const RedundantGroup& own) {
     return contradiction_of(model, own, asked.actuators) > kContradiction * model.size;
   });
-  if (!contradicts) return;
-  failed.status = Status::inconsistent;
-  const std::string known = known_contradiction(model);
-  if (failed.detail.find(known) == std::string::npos) failed.detail += (failed.detail.empty() ? "" : "; ") + known;
+  if (contradicts) failed.status = Status::inconsistent;
 }
 
 /// Iterations of Newton, in multiples of `newton.limit`, after which no shorter part of a step is tried, and how many
@@ -101,16 +100,21 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     return "it came as far as " + three_digits(100.0 * (state.time - from) / h) + " % of the step in " +
            std::to_string(iterations) + " iterations";
   };
-  const auto asked = [&] {
-    Command wanted;
-    scene_command(model, state, to, wanted);
-    return wanted;
+  const auto ask = [&] {
+    if (told.command)
+      command = *told.command;
+    else
+      scene_command(model, state, to, command);
+  };
+  const auto give_up = [&] {
+    ask();
+    tell_contradiction(model, command, earlier);
+    return earlier;
   };
   if (place.parts > 0 && spent > most) {
     earlier.status = Status::max_iterations;
     earlier.detail = has_cost(spent);
-    tell_contradiction(model, told.command ? *told.command : asked(), earlier);
-    return earlier;
+    return give_up();
   }
   for (int halvings = first; halvings <= last; ++halvings) {
     StepReport report;
@@ -119,10 +123,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     const double time = lands ? to : from + std::ldexp(h * end, -place.most);
     const double part = lands ? left : std::ldexp(h, -halvings) - place.off;
     // A jump of the command (a constant from the start, say) is spread over the parts of a halved step.
-    if (told.command)
-      command = *told.command;
-    else
-      scene_command(model, state, to, command);
+    ask();
     if (!lands) command = between(command_of(model, state), command, part / left);
     if (inverse) {
       if (told.goal)
@@ -161,8 +162,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
       break;
     }
   }
-  tell_contradiction(model, told.command ? *told.command : asked(), earlier);
-  return earlier;
+  return give_up();
 }
 
 }  // namespace
