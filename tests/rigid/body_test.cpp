@@ -26,6 +26,17 @@ Motion moving() {
   return own;
 }
 
+TEST(Body, moves_on_with_the_velocities_that_it_has) {
+  const Motion start = moving();
+  constexpr double kTime = 0.3;
+  Motion end = start;
+  move_on(start, kTime, end);
+  set_velocities(start, 1.0 / kTime, end);
+  EXPECT_LT((end.p - start.p - kTime * start.v).norm(), 1e-15);
+  EXPECT_LT((end.v - start.v).norm(), 1e-14);
+  EXPECT_LT((end.w - start.w).norm(), 1e-13);
+}
+
 /// The end that Newton finds; the tangent leaves out its skew part, so more than a few turns are needed.
 Motion step(const Body& body, const Motion& start, double h, const Vec3& gravity, int* turns = nullptr) {
   Motion end = start;

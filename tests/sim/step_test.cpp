@@ -31,7 +31,7 @@ TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
 
 /// Where this has to change, kStateLayout has to be raised.
 TEST(State, is_packed_in_the_order_that_its_layout_names) {
-  ASSERT_EQ(kStateLayout, 7u);
+  ASSERT_EQ(kStateLayout, 8u);
   double next = 0.0;
   const auto number = [&next] { return next += 1.0; };
   const auto fill = [&](auto& array, int rows, int columns) {
@@ -57,6 +57,7 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   for (double& value : rod.turned.reshaped()) value = number();
   fill(rod.masses, 3, 1);
   fill(rod.velocity, 3, 1);
+  fill(rod.rate, 2, 1);
   fill(rod.internal, 2, 2);
   fill(state.cables.emplace_back().z, 2, 1);
   rigid::Motion& body = state.bodies.emplace_back();
@@ -92,6 +93,36 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   std::iota(expected.begin(), expected.end(), 1.0);
   expected[1] = expected[4] = expected[5] = expected[on_second] = 1.0;  // contacts, on, stable
   EXPECT_EQ(pack(state), expected);
+}
+
+TEST(Step, ends_where_it_does_wherever_velocities_would_lead) {
+  const Model model = build(test::cable_block(), test::read_block);
+  Workspace workspace = make_workspace(model);
+  State state = initial_state(model);
+  constexpr double kStep = 0.002;
+  int moved_on = 0, stayed = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Command command = command_at(model, state.time + kStep);
+    const auto made_with = [&](double factor) {
+      State start = state;
+      start.rods[0].rate *= factor;
+      return step(model, workspace, command, start, kStep);
+    };
+    const StepResult made = made_with(1.0), lost = made_with(1e6);
+    ASSERT_EQ(made.report.status, Status::converged);
+    ASSERT_EQ(lost.report.status, Status::converged);
+    if (i > 0) {
+      EXPECT_GT(lost.report.newton, made.report.newton);
+    }
+    EXPECT_LT((lost.next.solids[0].x - made.next.solids[0].x).norm(), 1e-8);
+    EXPECT_LT((lost.next.rods[0].q - made.next.rods[0].q).norm(), 1e-5);
+    moved_on += made.report.newton;
+    State start = state;
+    start.rods[0].rate.setZero();
+    stayed += step(model, workspace, command, start, kStep).report.newton;
+    state = made.next;
+  }
+  EXPECT_LT(moved_on, stayed);
 }
 
 TEST(Step, leaving_out_the_last_evaluation_changes_no_motion) {

@@ -12,6 +12,11 @@ void set_velocities(const Motion& start, double rate, Motion& end) {
   end.w = lie::log(start.R.transpose() * end.R) * rate;
 }
 
+void move_on(const Motion& start, double time, Motion& end) {
+  end.p = start.p + time * start.v;
+  end.R = start.R * lie::exp(time * start.w);
+}
+
 Equations equations(const Body& body, const Motion& start, const Motion& end, double rate, const Vec3& gravity) {
   Motion now = end;
   set_velocities(start, rate, now);

@@ -26,6 +26,9 @@ struct Motion {
 /// Velocities at the end of a step that a body ends at (p, R): v = (p - p_0) rate, R = R_0 exp(w / rate).
 void set_velocities(const Motion& start, double rate, Motion& end);
 
+/// Where it comes to in a time [s] with the velocities that it has: p + t v, R exp(t w).
+void move_on(const Motion& start, double time, Motion& end);
+
 /// Left minus right side of
 ///     m (v - v_0) rate = m g,      I (w - w_0) rate + w x I w = 0   (in the body's axes),
 /// turned into the world's, and the symmetric part of its derivative by a displacement and a small rotation, both in

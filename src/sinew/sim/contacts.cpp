@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/sim/contact_merging.hpp"
 #include "sinew/sim/contact_search.hpp"
 #include "sinew/sim/curve_contact.hpp"
 #include "sinew/sim/places.hpp"
@@ -51,6 +52,8 @@ Vec3 was(const ContactSide& side, const std::array<double, 3>& weights, const Ve
 constexpr double kSoughtWithin = 0.1;
 /// And within which all are, in a step from one equilibrium to the next.
 constexpr double kStillWithin = 0.1;
+/// What moves on with its velocities stays clear of others but for this part of a thickness.
+constexpr double kClear = 0.1;
 /// Of such a pair so many of the nearest contacts take part, closed or not.
 constexpr std::size_t kSoughtContacts = 40;
 
@@ -113,55 +116,6 @@ Vec3 velocity(const ContactSide& side, const std::array<double, 3>& weights, con
 void play(ContactRoom& room, int contact) {
   const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), contact);
   if (place == room.playing.end() || *place != contact) room.playing.insert(place, contact);
-}
-
-/// Of two pieces of a rod that follow each other and touch the same part next to where they meet, one is enough: that
-/// on which the nearest point lies or, if neither or both have it, that which carries a force. (Both would be as good
-/// as the same row twice.)
-void drop_neighbours(const Moment& start, std::vector<ContactState>& found) {
-  constexpr double kSame = 0.1;  // of a piece
-  struct Place {
-    double s = 0.0, length = 0.0;
-    bool at_end = false;
-  };
-  const auto place_of = [&start](const ContactState& own) {
-    const Simplex a = start.placed(own.a), b = start.placed(own.b);
-    contact::Nearest nearest = contact::nearest(a, b);
-    const bool first = is_piece_of_rod(own.a, a);
-    if (first || is_piece_of_rod(own.b, b)) refine_place(start, own, a, b, nearest);
-    const ContactSide& side = first ? own.a : own.b;
-    const std::array<double, 3>& weights = first ? nearest.a : nearest.b;
-    return Place{abscissa_of(side, weights), side.abscissae[1] - side.abscissae[0],
-                 weights[1] <= 0.0 || weights[1] >= 1.0};
-  };
-  const auto same_part = [](const ContactSide& a, const ContactSide& b) {
-    return a.on == b.on && a.nodes == b.nodes && a.abscissae == b.abscissae && a.local.kind == b.local.kind &&
-           a.local.x[0] == b.local.x[0] && (a.local.corners() < 2 || a.local.x[1] == b.local.x[1]);
-  };
-  std::vector<bool> dropped(found.size(), false);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    for (std::size_t j = i + 1; j < found.size() && found[j].pair == found[i].pair && !dropped[i]; ++j) {
-      const ContactState &one = found[i], &other = found[j];
-      const bool on_a = is_piece_of_rod(one.a, one.a.local) && one.a.on == other.a.on && same_part(one.b, other.b),
-                 on_b = is_piece_of_rod(one.b, one.b.local) && one.b.on == other.b.on && same_part(one.a, other.a);
-      if (dropped[j]) continue;
-      if ((!on_a && !on_b) || (is_piece_of_rod(one.a, one.a.local) && is_piece_of_rod(one.b, one.b.local))) continue;
-      const Place p = place_of(one), q = place_of(other);
-      if (std::abs(p.s - q.s) > kSame * std::min(p.length, q.length)) continue;
-      const bool keep_first = p.at_end != q.at_end ? q.at_end : !one.force.isZero(0.0) || other.force.isZero(0.0);
-      dropped[keep_first ? j : i] = true;
-      ContactState &kept = found[keep_first ? i : j], &gone = found[keep_first ? j : i];
-      if (kept.force.isZero(0.0)) {  // the contact goes on from one piece to the next, with its force
-        kept.force = gone.force;
-        kept.normal = gone.normal;
-      }
-    }
-  }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!dropped[i]) found[kept++] = found[i];
-  }
-  found.resize(kept);
 }
 
 /// A contact as it is at the start of the step.
@@ -254,16 +208,17 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   }
   room.found.clear();
   for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
-  drop_neighbours(start, found);
-  iterate.contacts = std::move(found);
   if (room.thin.empty()) {
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));
   }
+  merge_rod_contacts(start, room.thin, found);
+  iterate.contacts = std::move(found);
   room.least.clear();
   room.gaps.clear();
   room.facings.clear();
   room.playing.clear();
+  room.clear = 1.0;
   std::vector<std::vector<std::pair<double, int>>> sought(context.model.pairs.size());
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
@@ -271,6 +226,8 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     room.gaps.push_back(now.gap);
     room.least.push_back(least_gap(context, context.model.pairs[own.pair].restitution, now));
     room.facings.push_back(contact::facing(start.placed(own.a), start.placed(own.b)));
+    const double into = -now.approach * context.h, until = std::max(0.0, now.gap + kClear * room.thin[own.pair]);
+    if (into > until) room.clear = std::min(room.clear, until / into);
     const auto number = static_cast<int>(i);
     if (!own.force.isZero() || now.gap + now.approach * context.h < fall) room.playing.push_back(number);
     if (context.model.pairs[own.pair].sought) sought[own.pair].emplace_back(now.gap, number);

@@ -41,6 +41,9 @@ struct ContactRoom {
   /// [m] least gap of each at the end of the step: 0, or below while bodies that overlap are moved apart, or above
   /// where one bounces.
   std::vector<double> least;
+  /// Part of the step after which, with the velocities of its start, something has come a tenth of the thinner object's
+  /// thickness into something; at most 1.
+  double clear = 1.0;
 };
 
 /// Finds what may touch within the step, starting from where the step starts, within `alarm` [m] of each other, or what

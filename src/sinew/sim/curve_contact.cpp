@@ -179,7 +179,9 @@ rod::Mat6 curve_gap_hessian(const Moment& now, const ContactState& own, const Si
   Eigen::Matrix2d G;
   G << 1.0 + d * n.dot(bend(first)), -first.tangent.dot(second.tangent), 0.0, 1.0 - d * n.dot(bend(second));
   G(1, 0) = G(0, 1);
-  if (std::min(G(0, 0), G(1, 1)) < 1.0 - kLiesAlong) return H;  // its place stays on the chord
+  for (int i = 0; i < 2; ++i) {
+    if (G(i, i) < 1.0 - kLiesAlong) G(i, i) = 1.0;  // its place stays on the chord: only the tangent there counts
+  }
   if (!(G.determinant() > kSideBySide * G(0, 0) * G(1, 1))) return H;
   Eigen::Matrix<double, 2, 6> B = Eigen::Matrix<double, 2, 6>::Zero();
   const double sign = of_a ? 1.0 : -1.0;

@@ -80,14 +80,6 @@ bool linearize_step(Memory& memory, const State& start, const Command& command, 
   return solve_there(memory, solid::Tangent::definite, times, steer);
 }
 
-/// Counts what a part of a search has cost.
-void add_effort(const StepReport& part, StepReport& whole) {
-  whole.newton += part.newton;
-  whole.times += part.times;
-  whole.contact.sweeps += part.contact.sweeps;
-  whole.contact.newton += part.contact.newton;
-}
-
 /// How commands lead to states.
 struct Way {
   std::function<StepResult(const Command&, const State& near)> make;  ///< a step or an equilibrium, from one near it

@@ -152,7 +152,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (contradicts(std::max(0.5 * report.violation, 10.0 * met))) return report;
     // Rows that once depended on each other may do so no longer by a hair: no force is large enough then.
     if (const std::string known = known_contradiction(context.model); !known.empty())
-      report.detail += (report.detail.empty() ? "" : "; ") + known;
+      report.detail = known + (report.detail.empty() ? "" : "; ") + report.detail;
     return report;
   };
   const auto complete = [&] {
@@ -199,7 +199,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   double contradiction = 0.0, left_off = INFINITY;
   int steady = 0;  // iterations that have made what is off smaller, one after the other
   constexpr double kContracts = 0.8;
-  constexpr int kSteady = 4, kPatience = 3;
+  constexpr int kSteady = 4, kPatience = 3, kTrial = 2;
   for (;; ++report.newton) {
     if (report.newton == 0 || rules.across) {
       at(iterate.t, context);
@@ -251,8 +251,11 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     // limit: to begin again with half the step costs more.
     const double size = context.model.size,
                  off = std::max({report.residual, report.violation / size, contact_error / size});
-    steady = off < kContracts * left_off ? steady + 1 : 0;
+    const bool contracts = off < kContracts * left_off;
+    steady = contracts ? steady + 1 : 0;
     left_off = off;
+    if (rules.on_trial && report.newton >= kTrial && !contracts)
+      return fail(Status::max_iterations, "the guess that velocities have moved on leads nowhere");
     const int limit = steady >= kSteady && !context.model.pairs.empty() ? kPatience * rules.limit : rules.limit;
     if (!rules.fixed && report.newton >= limit)
       return fail(Status::max_iterations,

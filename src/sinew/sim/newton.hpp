@@ -31,6 +31,7 @@ struct NewtonRules {
   /// any at all, by steps that are only limited to what a linearisation can be trusted for.
   Linearization::Wanted wanted = Linearization::Wanted::descent;
   const AcrossPath* across = nullptr;        ///< t is looked for, too
+  bool on_trial = false;                     ///< there is another guess: it fails as soon as an iteration does not help
   Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
   bool compared = false;                     ///< with a converged step, where they leave much
   Inverse* inverse = nullptr;                ///< commands are looked for, too: it has begun
@@ -110,17 +111,16 @@ StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
     memory.alarm = std::max(2.0 * memory.alarm, 1.5 * memory.passage.alarm);
     const StepReport earlier = std::move(report);
     report = make();
-    report.times += earlier.times;
-    report.newton += earlier.newton;
-    report.contact.sweeps += earlier.contact.sweeps;
-    report.contact.newton += earlier.contact.newton;
+    add_effort(earlier, report);
   }
   return report;
 }
 
+/// What a step begins with: where it starts, or where velocities carry that, as far as nothing is in the way.
+enum class Guess { start, moved_on };
 /// First guess of a step that Memory::context describes, and the contacts looked for in it; returns the seconds that
 /// finding them took.
-double begin_step(Memory& memory);
+double begin_step(Memory& memory, Guess guess = Guess::start);
 
 /// One step of h from a state to a command, by these rules: `step`, `inverse_step`. On failure the state stays.
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state);

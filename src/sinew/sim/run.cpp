@@ -62,7 +62,8 @@ void tell_contradiction(const Model& model, const Command& asked, StepReport& fa
   if (accepted(failed.status) || failed.status == Status::inconsistent || failed.status == Status::passed_through)
     return;
   const std::string known = known_contradiction(model);
-  if (failed.detail.find(known) == std::string::npos) failed.detail += (failed.detail.empty() ? "" : "; ") + known;
+  if (failed.detail.find(known) == std::string::npos)
+    failed.detail = known + (failed.detail.empty() ? "" : "; ") + failed.detail;
   const bool contradicts = std::any_of(model.redundant.begin(), model.redundant.end(), [&](const RedundantGroup& own) {
     return contradiction_of(model, own, asked.actuators) > kContradiction * model.size;
   });

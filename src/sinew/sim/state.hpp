@@ -20,6 +20,7 @@ struct RodState {
   rod::Mat3 turned = rod::Mat3::Identity();  ///< how far a floating base has turned
   Eigen::Matrix3Xd masses;                   ///< [m] where the mass points are
   Eigen::Matrix3Xd velocity;                 ///< [m/s] of the mass points
+  Eigen::VectorXd rate;                      ///< [1/s] of q, in the last step
   Eigen::MatrixXd internal;                  ///< internal forces, see sim/internal.hpp
 };
 
@@ -102,9 +103,12 @@ State initial_state(const Model& model);
 /// All numbers are.
 bool finite(const State& state);
 
+/// Whether anything has a velocity.
+bool moves(const State& state);
+
 /// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
 /// refused.
-inline constexpr std::uint64_t kStateLayout = 7;
+inline constexpr std::uint64_t kStateLayout = 8;
 /// The state as plain numbers in a fixed order, contacts at the end, and back. unpack throws std::invalid_argument if
 /// their number, or a contact's pair, is not this model's.
 std::vector<double> pack(const State& state);

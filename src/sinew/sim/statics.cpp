@@ -67,12 +67,6 @@ NewtonRules whole_steps(const Model& model) {
   return {model.scene.newton.limit, false, Linearization::Wanted::any, nullptr};
 }
 
-/// Counts the iterations and the time of a part of a step.
-void add_effort(const StepReport& part, StepReport& whole) {
-  whole.newton += part.newton;
-  whole.times += part.times;
-}
-
 /// First guess of the step that Memory::context describes, and the contacts looked for in it.
 void begin(Memory& memory, State& guess) {
   first_guess(memory.context, guess);
@@ -83,7 +77,10 @@ void begin(Memory& memory, State& guess) {
 /// Takes the motion from a state.
 void stop(State& state) {
   for (SolidState& own : state.solids) own.v.setZero();
-  for (RodState& own : state.rods) own.velocity.setZero();
+  for (RodState& own : state.rods) {
+    own.velocity.setZero();
+    own.rate.setZero();
+  }
   for (rigid::Motion& own : state.bodies) {
     own.v.setZero();
     own.w.setZero();

@@ -50,21 +50,30 @@ Command between(Command from, const Command& to, double part) {
   return from;
 }
 
+void add_effort(const StepReport& part, StepReport& whole) {
+  whole.newton += part.newton;
+  whole.times += part.times;
+  whole.contact.sweeps += part.contact.sweeps;
+  whole.contact.newton += part.contact.newton;
+}
+
 Workspace::Workspace(const Model& model, int threads) : memory_(std::make_unique<Memory>(model, threads)) {}
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-double begin_step(Memory& memory) {
+double begin_step(Memory& memory, Guess guess) {
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
-  follow_points(memory.context, iterate.state, memory.here);
-  double spent = 0.0;
+  double spent = 0.0, clear = 1.0;
   if (!memory.context.model.pairs.empty()) {  // two readings of the clock cost more than to find none
     const Clock clock(spent);
     find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm);
+    clear = memory.here.contacts().clear;
   }
+  if (guess == Guess::moved_on) move_on(memory.context, clear, iterate.state);
+  follow_points(memory.context, iterate.state, memory.here);
   return spent;
 }
 
@@ -156,13 +165,25 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
   {
     const Lent lent(state, memory.context.start);
     memory.context.set(command, h);
-    report = look_until_found(memory, alarm_distance(memory.context), [&] {
-      const double spent = begin_step(memory);
-      // What is prescribed stands in the context already.
-      StepReport own = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
-      own.times.contact += spent;
-      return own;
-    });
+    const auto from = [&](Guess guess) {
+      NewtonRules own_rules = rules;
+      own_rules.on_trial = guess == Guess::moved_on;
+      return look_until_found(memory, alarm_distance(memory.context), [&] {
+        const double spent = begin_step(memory, guess);
+        // What is prescribed stands in the context already.
+        StepReport own = newton([](double, StepContext&) {}, memory, own_rules, memory.iterate);
+        own.times.contact += spent;
+        return own;
+      });
+    };
+    // (A linearised step is one about its start. Commands that are looked for begin there, too.)
+    const bool moves_on = !rules.fixed && !rules.inverse && memory.context.rate > 0.0 && moves(memory.context.start);
+    report = from(moves_on ? Guess::moved_on : Guess::start);
+    if (moves_on && !accepted(report.status)) {
+      const StepReport earlier = std::move(report);
+      report = from(Guess::start);
+      add_effort(earlier, report);
+    }
     // (Before the state moves: from then on nothing asks for memory.)
     if (rules.inverse && accepted(report.status))
       report.aim = rules.inverse->aim(memory.context.model, memory.iterate.state);

@@ -132,6 +132,9 @@ struct StepReport {
   StageTimes times;
 };
 
+/// Counts what an attempt or a part has cost in what the whole has.
+void add_effort(const StepReport& part, StepReport& whole);
+
 struct Memory;
 
 /// Memory that steps of one model reuse, which must outlive it; holds nothing between them that they would not find

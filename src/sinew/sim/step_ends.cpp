@@ -39,6 +39,22 @@ void first_guess(const StepContext& context, State& guess) {
   place_held(context, guess);
 }
 
+void move_on(const StepContext& context, double part, State& guess) {
+  constexpr double kMostTurn = 1.0;  // [rad]
+  double time = part * context.h;
+  for (const rigid::Motion& own : context.start.bodies) {
+    if (time * own.w.norm() > kMostTurn) time = kMostTurn / own.w.norm();
+  }
+  for (std::size_t i = 0; i < guess.solids.size(); ++i) {
+    const int frame = context.model.solids[i].frame;
+    if (frame < 0 || !context.model.scene.frames[frame].second.motion)
+      guess.solids[i].x += time * context.start.solids[i].v;
+  }
+  place_held(context, guess);
+  for (std::size_t i = 0; i < guess.rods.size(); ++i) guess.rods[i].q += time * context.start.rods[i].rate;
+  for (std::size_t i = 0; i < guess.bodies.size(); ++i) rigid::move_on(context.start.bodies[i], time, guess.bodies[i]);
+}
+
 void follow_points(const StepContext& context, State& iterate, Linearization& here) {
   int configured = -1;  // points of one rod stand together
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
@@ -93,6 +109,7 @@ void finish(const StepContext& context, State& next, Linearization& here) {
     rod::reconfigure(model.rods[i].rod, base_of(context, next, static_cast<int>(i)), own.q, shape);
     rod::mass_positions(shape, own.masses);
     own.velocity = (own.masses - context.start.rods[i].masses) * context.rate;
+    own.rate = (own.q - context.start.rods[i].q) * context.rate;
   }
   for (std::size_t i = 0; i < next.bodies.size(); ++i)
     rigid::set_velocities(context.start.bodies[i], context.rate, next.bodies[i]);

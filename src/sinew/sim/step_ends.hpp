@@ -13,6 +13,9 @@ void place_held(const StepContext& context, State& iterate);
 /// First guess of the end of the step: where the start is, carried along by moving frames.
 void first_guess(const StepContext& context, State& guess);
 
+/// Moves it on with the velocities of the start, for a part of the step; a solid that a moving frame carries stays.
+void move_on(const StepContext& context, double part, State& guess);
+
 /// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
 /// that the end has reached again come on.
 /// The rods' shapes stay with the linearisation, which then finds them.

@@ -196,6 +196,7 @@ void CoupledFactor::eliminate_chains(const CoupledProblem& problem) {
 
 void CoupledFactor::factor() {
   lu_.reset();
+  orthogonal_.reset();
   bool symmetric = chains_;
   for (const ChainPart& part : problem_->chains) symmetric &= part.chain.symmetric();
   for (const VolumePart& volume : problem_->volumes) symmetric &= volume.symmetric;
@@ -269,6 +270,7 @@ bool CoupledFactor::factor_symmetric() {
 
 void CoupledFactor::factor_general(bool join_chains) {
   joined_ = join_chains;
+  orthogonal_.reset();
   if (joined_) {
     K_ = written_out(*problem_);
   } else {
@@ -368,10 +370,8 @@ void CoupledFactor::solve_once(const RightSide& right, CoupledSolution& solution
   } else if (y.size() > 0) {
     y.array() *= scale_.array();
     if (kind_ == Kind::singular) {
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
-      cod.setThreshold(1e-12);
-      cod.compute(K_);
-      y = cod.solve(Eigen::VectorXd(y));
+      if (!orthogonal_) (orthogonal_ = std::make_unique<Orthogonal>())->setThreshold(1e-12).compute(K_);
+      y = orthogonal_->solve(Eigen::VectorXd(y));
     } else {
       y = lu_->solve(Eigen::VectorXd(y));
     }

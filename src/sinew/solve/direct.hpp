@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <memory>
 #include <vector>
 
@@ -100,6 +101,9 @@ class CoupledFactor {
   // Of any other, chains perhaps included.
   Eigen::MatrixXd K_;
   std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;
+  /// Of one that is singular; made when it is first solved.
+  using Orthogonal = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
+  std::unique_ptr<Orthogonal> orthogonal_;
 
   Eigen::VectorXd scale_;  ///< D: D K D has entries near one
   Eigen::VectorXd diagonal_, largest_, y_, left_, forces_, moved_;

@@ -61,7 +61,7 @@ def one_linearisation(random_: random.Random) -> tuple[Scene, Judge]:
         rest: Vec = (0.095, 0.0, 0.0)
         off = norm(sub(at(rows[-1], "tip"), at(other[-1], "tip"))) / norm(sub(at(other[-1], "tip"), rest))
         told = max((own["worst"] for own in report["warnings"] if own["code"] == "linearised_step_off"), default=0.0)
-        if off > 0.07 and abs(told - off) > 0.05 + 0.3 * off:
+        if off > 0.07 and abs(max(told, 0.05) - off) > 0.05 + 0.3 * off:  # (less than 0.05 is not told)
             return [f"{100 * off:.3g} % off, told {100 * told:.3g} %"]
         return [f"{100 * off:.3g} % off, told {100 * told:.3g} %"] if off < 0.02 and told > 0.07 else []
 

@@ -1,0 +1,136 @@
+#include "sinew/sim/contact_merging.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace sinew {
+
+namespace {
+
+using Kind = Collider::Kind;
+using contact::Simplex;
+
+/// Where a rod is touched. (Of two rods, where the first is.)
+struct Spot {
+  bool on_a = false;           ///< the rod is the contact's first side
+  bool on_piece = false;       ///< else at a point
+  bool at_end = false;         ///< of its piece
+  double s = 0.0;              ///< [m] abscissa
+  double length = 0.0;         ///< [m] of the piece
+  double gap = 0.0;            ///< [m]
+  Vec3 normal = Vec3::Zero();  ///< towards the rod
+};
+
+Spot spot_of(const Moment& start, const ContactState& own) {
+  const Simplex a = start.placed(own.a), b = start.placed(own.b);
+  contact::Nearest nearest = contact::nearest(a, b);
+  follow_curves(start, own, a, b, nearest);
+  Spot spot;
+  const bool piece_of_a = is_piece_of_rod(own.a, a), piece_of_b = is_piece_of_rod(own.b, b);
+  spot.on_piece = piece_of_a || piece_of_b;
+  spot.on_a = spot.on_piece ? piece_of_a : own.a.on.kind == Kind::rod;
+  const ContactSide& side = spot.on_a ? own.a : own.b;
+  const std::array<double, 3>& weights = spot.on_a ? nearest.a : nearest.b;
+  spot.at_end = weights[1] <= 0.0 || weights[1] >= 1.0;
+  spot.s = abscissa_of(side, weights);
+  if (spot.on_piece) spot.length = side.abscissae[1] - side.abscissae[0];
+  spot.gap = nearest.gap;
+  spot.normal = spot.on_a ? nearest.normal : Vec3(-nearest.normal);
+  return spot;
+}
+
+const ContactSide& rod_side(const ContactState& own, const Spot& spot) { return spot.on_a ? own.a : own.b; }
+const ContactSide& other_side(const ContactState& own, const Spot& spot) { return spot.on_a ? own.b : own.a; }
+
+bool between_rods(const ContactState& own) { return own.a.on.kind == Kind::rod && own.b.on.kind == Kind::rod; }
+
+bool same_part(const ContactSide& a, const ContactSide& b) {
+  if (!(a.on == b.on) || a.nodes != b.nodes || a.abscissae != b.abscissae || a.local.kind != b.local.kind) return false;
+  const auto &x = a.local.x, &y = b.local.x;
+  if (a.local.corners() < 2) return x[0] == y[0];
+  return (x[0] == y[0] && x[1] == y[1]) || (x[0] == y[1] && x[1] == y[0]);  // (an axis may be told from either end)
+}
+
+/// Whether two contacts are of parts of one rod that overlap or follow each other.
+bool neighbours(const ContactState& one, const ContactState& other) {
+  const auto touch = [](const ContactSide& a, const ContactSide& b) {
+    if (a.on.kind != Kind::rod || !(a.on == b.on)) return false;
+    const auto last = [](const ContactSide& own) { return own.abscissae[own.local.corners() == 2 ? 1 : 0]; };
+    return a.abscissae[0] <= last(b) && b.abscissae[0] <= last(a);
+  };
+  return touch(one.a, other.a) || touch(one.a, other.b) || touch(one.b, other.a) || touch(one.b, other.b);
+}
+
+/// Whether two pieces touch the same part at the same place.
+bool meet_there(const ContactState& one, const Spot& p, const ContactState& other, const Spot& q) {
+  constexpr double kSame = 0.1;  // of a piece
+  if (!p.on_piece || !q.on_piece || p.on_a != q.on_a) return false;
+  const auto pieces_of_two = [](const ContactState& own) {
+    return is_piece_of_rod(own.a, own.a.local) && is_piece_of_rod(own.b, own.b.local);
+  };
+  return !pieces_of_two(one) && rod_side(one, p).on == rod_side(other, q).on &&
+         same_part(other_side(one, p), other_side(other, q)) &&
+         std::abs(p.s - q.s) <= kSame * std::min(p.length, q.length);
+}
+
+/// Whether the place of a piece stands for that of a point of the rod beside it.
+bool stands_for(const ContactState& piece, const Spot& p, const ContactState& point, const Spot& q, double thin) {
+  constexpr double kBeside = 0.25;  // of the piece
+  constexpr double kAsNear = 0.01;  // of the thickness
+  constexpr double kAlike = 0.9;    // cosine of the angle between the normals
+  return p.on_piece && !q.on_piece && !between_rods(piece) && !between_rods(point) &&
+         rod_side(piece, p).on == rod_side(point, q).on && same_part(other_side(piece, p), other_side(point, q)) &&
+         std::abs(p.s - q.s) <= kBeside * p.length && p.gap <= q.gap + kAsNear * thin &&
+         p.normal.dot(q.normal) > kAlike;
+}
+
+/// The force of one that goes, to one that stays.
+void hand_over(const ContactState& from, const Spot& by, ContactState& to, const Spot& at) {
+  if (!to.force.isZero(0.0)) return;
+  const double sign = by.on_a == at.on_a ? 1.0 : -1.0;
+  to.force = sign * from.force;
+  to.normal = sign * from.normal;
+}
+
+}  // namespace
+
+void merge_rod_contacts(const Moment& start, const std::vector<double>& thin, std::vector<ContactState>& found) {
+  std::vector<std::optional<Spot>> spots(found.size());  // most have no neighbour
+  std::vector<bool> goes(found.size(), false);
+  const auto drop = [&](std::size_t gone, std::size_t kept) {
+    goes[gone] = true;
+    hand_over(found[gone], *spots[gone], found[kept], *spots[kept]);
+  };
+  const auto each_of_pair = [&](const auto& visit) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (std::size_t j = i + 1; j < found.size() && found[j].pair == found[i].pair; ++j) {
+        if (goes[i] || goes[j] || !neighbours(found[i], found[j])) continue;
+        for (const std::size_t k : {i, j}) {
+          if (!spots[k]) spots[k] = spot_of(start, found[k]);
+        }
+        visit(i, j, *spots[i], *spots[j]);
+      }
+    }
+  };
+  each_of_pair([&](std::size_t i, std::size_t j, const Spot& p, const Spot& q) {
+    if (!meet_there(found[i], p, found[j], q)) return;
+    const bool first = p.at_end != q.at_end ? q.at_end : !found[i].force.isZero(0.0) || found[j].force.isZero(0.0);
+    drop(first ? j : i, first ? i : j);
+  });
+  each_of_pair([&](std::size_t i, std::size_t j, const Spot& p, const Spot& q) {
+    const double thickness = thin[static_cast<std::size_t>(found[i].pair)];
+    if (stands_for(found[i], p, found[j], q, thickness)) {
+      drop(j, i);
+    } else if (stands_for(found[j], q, found[i], p, thickness)) {
+      drop(i, j);
+    }
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!goes[i]) found[kept++] = found[i];
+  }
+  found.resize(kept);
+}
+
+}  // namespace sinew
