@@ -57,7 +57,7 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   for (double& value : rod.turned.reshaped()) value = number();
   fill(rod.masses, 3, 1);
   fill(rod.velocity, 3, 1);
-  fill(rod.rate, 2, 1);
+  fill(rod.q_rate, 2, 1);
   fill(rod.internal, 2, 2);
   fill(state.cables.emplace_back().z, 2, 1);
   rigid::Motion& body = state.bodies.emplace_back();
@@ -105,7 +105,7 @@ TEST(Step, ends_where_it_does_wherever_velocities_would_lead) {
     const Command command = command_at(model, state.time + kStep);
     const auto made_with = [&](double factor) {
       State start = state;
-      start.rods[0].rate *= factor;
+      start.rods[0].q_rate *= factor;
       return step(model, workspace, command, start, kStep);
     };
     const StepResult made = made_with(1.0), lost = made_with(1e6);
@@ -118,7 +118,7 @@ TEST(Step, ends_where_it_does_wherever_velocities_would_lead) {
     EXPECT_LT((lost.next.rods[0].q - made.next.rods[0].q).norm(), 1e-5);
     moved_on += made.report.newton;
     State start = state;
-    start.rods[0].rate.setZero();
+    start.rods[0].q_rate.setZero();
     stayed += step(model, workspace, command, start, kStep).report.newton;
     state = made.next;
   }
@@ -391,6 +391,22 @@ TEST(Step, a_free_tip_leaves_points_behind_and_finds_them_again) {
   EXPECT_EQ(on(trace.states[0]), 5);   // of 0, 12, .. 60 mm; the first sits in the clamp and was dropped
   EXPECT_EQ(on(trace.states[50]), 2);  // 12 and 24 mm remain
   EXPECT_GE(on(trace.states[100]), 4);
+}
+
+TEST(Step, a_tip_that_stops_before_a_point_stays_on_it) {
+  // Within the fifth step the motor stops 1.1 mm before the tip leaves the point at 48 mm, which its velocity would.
+  Scene scene = test::cable_block();
+  test::slide(scene, 0).anchor_tip = AnchorTip::none;
+  scene.actuators[0].second.drive = Table{{0.0, 10.9 / 260.0, 0.1}, {0.0, 10.9 * mm, 10.9 * mm}};
+  scene.time = {0.01, 0.08};
+  scene.rods[0].second.material.density = 0.0;
+  const Model model = build(scene, test::read_block);
+  const test::Trace trace = test::run_all(model);
+  ASSERT_EQ(trace.end, RunEnd::done) << to_string(trace.failure.status);
+  for (std::size_t i = 4; i < trace.states.size(); ++i) {
+    const State& state = trace.states[i];
+    EXPECT_EQ(std::count_if(state.points.begin(), state.points.end(), [](const auto& p) { return p.on; }), 4) << i;
+  }
 }
 
 // Each way to fail, provoked.

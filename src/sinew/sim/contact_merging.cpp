@@ -11,7 +11,7 @@ namespace {
 using Kind = Collider::Kind;
 using contact::Simplex;
 
-/// Where a rod is touched. (Of two rods, where the first is.)
+/// Where a rod is touched by something else.
 struct Spot {
   bool on_a = false;           ///< the rod is the contact's first side
   bool on_piece = false;       ///< else at a point
@@ -27,11 +27,10 @@ Spot spot_of(const Moment& start, const ContactState& own) {
   contact::Nearest nearest = contact::nearest(a, b);
   follow_curves(start, own, a, b, nearest);
   Spot spot;
-  const bool piece_of_a = is_piece_of_rod(own.a, a), piece_of_b = is_piece_of_rod(own.b, b);
-  spot.on_piece = piece_of_a || piece_of_b;
-  spot.on_a = spot.on_piece ? piece_of_a : own.a.on.kind == Kind::rod;
+  spot.on_a = own.a.on.kind == Kind::rod;
   const ContactSide& side = spot.on_a ? own.a : own.b;
   const std::array<double, 3>& weights = spot.on_a ? nearest.a : nearest.b;
+  spot.on_piece = side.local.corners() == 2;
   spot.at_end = weights[1] <= 0.0 || weights[1] >= 1.0;
   spot.s = abscissa_of(side, weights);
   if (spot.on_piece) spot.length = side.abscissae[1] - side.abscissae[0];
@@ -43,8 +42,6 @@ Spot spot_of(const Moment& start, const ContactState& own) {
 const ContactSide& rod_side(const ContactState& own, const Spot& spot) { return spot.on_a ? own.a : own.b; }
 const ContactSide& other_side(const ContactState& own, const Spot& spot) { return spot.on_a ? own.b : own.a; }
 
-bool between_rods(const ContactState& own) { return own.a.on.kind == Kind::rod && own.b.on.kind == Kind::rod; }
-
 bool same_part(const ContactSide& a, const ContactSide& b) {
   if (!(a.on == b.on) || a.nodes != b.nodes || a.abscissae != b.abscissae || a.local.kind != b.local.kind) return false;
   const auto &x = a.local.x, &y = b.local.x;
@@ -52,25 +49,24 @@ bool same_part(const ContactSide& a, const ContactSide& b) {
   return (x[0] == y[0] && x[1] == y[1]) || (x[0] == y[1] && x[1] == y[0]);  // (an axis may be told from either end)
 }
 
-/// Whether two contacts are of parts of one rod that overlap or follow each other.
-bool neighbours(const ContactState& one, const ContactState& other) {
-  const auto touch = [](const ContactSide& a, const ContactSide& b) {
-    if (a.on.kind != Kind::rod || !(a.on == b.on)) return false;
-    const auto last = [](const ContactSide& own) { return own.abscissae[own.local.corners() == 2 ? 1 : 0]; };
-    return a.abscissae[0] <= last(b) && b.abscissae[0] <= last(a);
+/// A contact of one rod with something else. (Two rods touch with pieces alone.)
+bool of_one_rod(const ContactState& own) { return (own.a.on.kind == Kind::rod) != (own.b.on.kind == Kind::rod); }
+
+/// Whether two of them are of parts of one rod that overlap or follow each other.
+bool adjoin(const ContactState& one, const ContactState& other) {
+  const auto side = [](const ContactState& own) -> const ContactSide& {
+    return own.a.on.kind == Kind::rod ? own.a : own.b;
   };
-  return touch(one.a, other.a) || touch(one.a, other.b) || touch(one.b, other.a) || touch(one.b, other.b);
+  const auto last = [](const ContactSide& own) { return own.abscissae[own.local.corners() == 2 ? 1 : 0]; };
+  const ContactSide &a = side(one), &b = side(other);
+  return a.on == b.on && a.abscissae[0] <= last(b) && b.abscissae[0] <= last(a);
 }
 
 /// Whether two pieces touch the same part at the same place.
 bool meet_there(const ContactState& one, const Spot& p, const ContactState& other, const Spot& q) {
   constexpr double kSame = 0.1;  // of a piece
   if (!p.on_piece || !q.on_piece || p.on_a != q.on_a) return false;
-  const auto pieces_of_two = [](const ContactState& own) {
-    return is_piece_of_rod(own.a, own.a.local) && is_piece_of_rod(own.b, own.b.local);
-  };
-  return !pieces_of_two(one) && rod_side(one, p).on == rod_side(other, q).on &&
-         same_part(other_side(one, p), other_side(other, q)) &&
+  return rod_side(one, p).on == rod_side(other, q).on && same_part(other_side(one, p), other_side(other, q)) &&
          std::abs(p.s - q.s) <= kSame * std::min(p.length, q.length);
 }
 
@@ -79,10 +75,9 @@ bool stands_for(const ContactState& piece, const Spot& p, const ContactState& po
   constexpr double kBeside = 0.25;  // of the piece
   constexpr double kAsNear = 0.01;  // of the thickness
   constexpr double kAlike = 0.9;    // cosine of the angle between the normals
-  return p.on_piece && !q.on_piece && !between_rods(piece) && !between_rods(point) &&
-         rod_side(piece, p).on == rod_side(point, q).on && same_part(other_side(piece, p), other_side(point, q)) &&
-         std::abs(p.s - q.s) <= kBeside * p.length && p.gap <= q.gap + kAsNear * thin &&
-         p.normal.dot(q.normal) > kAlike;
+  return p.on_piece && !q.on_piece && rod_side(piece, p).on == rod_side(point, q).on &&
+         same_part(other_side(piece, p), other_side(point, q)) && std::abs(p.s - q.s) <= kBeside * p.length &&
+         p.gap <= q.gap + kAsNear * thin && p.normal.dot(q.normal) > kAlike;
 }
 
 /// The force of one that goes, to one that stays.
@@ -96,7 +91,7 @@ void hand_over(const ContactState& from, const Spot& by, ContactState& to, const
 }  // namespace
 
 void merge_rod_contacts(const Moment& start, const std::vector<double>& thin, std::vector<ContactState>& found) {
-  std::vector<std::optional<Spot>> spots(found.size());  // most have no neighbour
+  std::vector<std::optional<Spot>> spots(found.size());
   std::vector<bool> goes(found.size(), false);
   const auto drop = [&](std::size_t gone, std::size_t kept) {
     goes[gone] = true;
@@ -104,8 +99,9 @@ void merge_rod_contacts(const Moment& start, const std::vector<double>& thin, st
   };
   const auto each_of_pair = [&](const auto& visit) {
     for (std::size_t i = 0; i < found.size(); ++i) {
+      if (!of_one_rod(found[i])) continue;
       for (std::size_t j = i + 1; j < found.size() && found[j].pair == found[i].pair; ++j) {
-        if (goes[i] || goes[j] || !neighbours(found[i], found[j])) continue;
+        if (goes[i] || goes[j] || !of_one_rod(found[j]) || !adjoin(found[i], found[j])) continue;
         for (const std::size_t k : {i, j}) {
           if (!spots[k]) spots[k] = spot_of(start, found[k]);
         }

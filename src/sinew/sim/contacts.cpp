@@ -112,6 +112,16 @@ Vec3 velocity(const ContactSide& side, const std::array<double, 3>& weights, con
   return Vec3::Zero();
 }
 
+/// Velocity at the start of the step of the mass point of a rod that is nearest to a place; zero of rods without mass.
+Vec3 rod_velocity(const StepContext& context, int rod, double s) {
+  const std::vector<rod::MassPoint>& masses = context.model.rods[rod].rod.masses;
+  if (masses.empty()) return Vec3::Zero();
+  const auto nearer = [s](const rod::MassPoint& a, const rod::MassPoint& b) {
+    return std::abs(a.s - s) < std::abs(b.s - s);
+  };
+  return context.start.rods[rod].velocity.col(std::min_element(masses.begin(), masses.end(), nearer) - masses.begin());
+}
+
 /// A contact takes part from now on, if it does not yet.
 void play(ContactRoom& room, int contact) {
   const auto place = std::lower_bound(room.playing.begin(), room.playing.end(), contact);
@@ -121,7 +131,8 @@ void play(ContactRoom& room, int contact) {
 /// A contact as it is at the start of the step.
 struct Beginning {
   double gap = 0.0;       ///< [m]
-  double approach = 0.0;  ///< [m/s] of the gap
+  double approach = 0.0;  ///< [m/s] of the gap, points of rods at rest
+  double opens = 0.0;     ///< [m/s] of the gap, with the motion of rods
 };
 Beginning beginning(const StepContext& context, const ContactState& own, const Moment& start) {
   const Simplex a = start.placed(own.a), b = start.placed(own.b);
@@ -129,8 +140,12 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
   const Feet feet = follow_curves(start, own, a, b, nearest);
   const Vec3& n = nearest.normal;
   const Vec3 pa = point_on(own.a, a, nearest.a, feet.a, -n), pb = pa - nearest.gap * n;
-  return {nearest.gap, n.dot(velocity(own.a, nearest.a, pa, context, start.frames) -
-                             velocity(own.b, nearest.b, pb, context, start.frames))};
+  const double approach = n.dot(velocity(own.a, nearest.a, pa, context, start.frames) -
+                                velocity(own.b, nearest.b, pb, context, start.frames));
+  const auto along = [&](const ContactSide& side, const std::array<double, 3>& weights) {
+    return side.on.kind == Kind::rod ? n.dot(rod_velocity(context, side.on.number, abscissa_of(side, weights))) : 0.0;
+  };
+  return {nearest.gap, approach, approach + along(own.a, nearest.a) - along(own.b, nearest.b)};
 }
 
 /// The gap that a contact must have at the end of the step.
@@ -226,7 +241,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     room.gaps.push_back(now.gap);
     room.least.push_back(least_gap(context, context.model.pairs[own.pair].restitution, now));
     room.facings.push_back(contact::facing(start.placed(own.a), start.placed(own.b)));
-    const double into = -now.approach * context.h, until = std::max(0.0, now.gap + kClear * room.thin[own.pair]);
+    const double into = -now.opens * context.h, until = std::max(0.0, now.gap + kClear * room.thin[own.pair]);
     if (into > until) room.clear = std::min(room.clear, until / into);
     const auto number = static_cast<int>(i);
     if (!own.force.isZero() || now.gap + now.approach * context.h < fall) room.playing.push_back(number);

@@ -197,7 +197,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   here.forget();
   memory.passage = {};
   double contradiction = 0.0, left_off = INFINITY;
-  int steady = 0;  // iterations that have made what is off smaller, one after the other
+  bool again = false;  // an iteration is made once more
+  int steady = 0;      // iterations that have made what is off smaller, one after the other
   constexpr double kContracts = 0.8;
   constexpr int kSteady = 4, kPatience = 3, kTrial = 2;
   for (;; ++report.newton) {
@@ -251,8 +252,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     // limit: to begin again with half the step costs more.
     const double size = context.model.size,
                  off = std::max({report.residual, report.violation / size, contact_error / size});
-    const bool contracts = off < kContracts * left_off;
-    steady = contracts ? steady + 1 : 0;
+    const bool contracts = off < kContracts * left_off || again;
+    if (!again) steady = contracts ? steady + 1 : 0;
+    again = false;
     left_off = off;
     if (rules.on_trial && report.newton >= kTrial && !contracts)
       return fail(Status::max_iterations, "the guess that velocities have moved on leads nowhere");
@@ -290,6 +292,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       return fail(Status::inconsistent, std::move(contact));
     if ((!increment.reduced.ok || increment.reduced.redundant) && here.find_redundant()) {
       --report.newton;  // the same iteration once more, with the compliance of these rows
+      again = true;
       continue;
     }
     report.redundant |= increment.reduced.redundant;

@@ -30,8 +30,10 @@ struct NewtonRules {
   /// Which equilibrium is looked for: the nearest minimum, by steps that are shortened where they lead away from it, or
   /// any at all, by steps that are only limited to what a linearisation can be trusted for.
   Linearization::Wanted wanted = Linearization::Wanted::descent;
-  const AcrossPath* across = nullptr;        ///< t is looked for, too
-  bool on_trial = false;                     ///< there is another guess: it fails as soon as an iteration does not help
+  const AcrossPath* across = nullptr;  ///< t is looked for, too
+  /// It begins where velocities have led, and is given up once an iteration after the second helps by less than a
+  /// fifth.
+  bool on_trial = false;
   Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
   bool compared = false;                     ///< with a converged step, where they leave much
   Inverse* inverse = nullptr;                ///< commands are looked for, too: it has begun

@@ -35,7 +35,7 @@ State initial_state(const Model& model) {
     const auto shape = rod::configure(rod.rod, rod.base, own.q);
     own.masses = rod::mass_positions(shape);
     own.velocity.setZero(3, own.masses.cols());
-    own.rate.setZero(own.q.size());
+    own.q_rate.setZero(own.q.size());
     own.internal = no_internal(rod);
   }
   for (const GeometricCableModel& cable : model.cables)
@@ -98,7 +98,7 @@ void each_number(StateType& state, const Visit& visit) {
     array(rod.turned);
     array(rod.masses);
     array(rod.velocity);
-    array(rod.rate);
+    array(rod.q_rate);
     array(rod.internal);
   }
   for (auto& cable : state.cables) array(cable.z);
@@ -156,7 +156,7 @@ bool finite(const State& state) {
 bool moves(const State& state) {
   const auto any = [](const auto& parts, const auto& moves) { return std::any_of(parts.begin(), parts.end(), moves); };
   return any(state.solids, [](const SolidState& own) { return !own.v.isZero(0.0); }) ||
-         any(state.rods, [](const RodState& own) { return !own.rate.isZero(0.0); }) ||
+         any(state.rods, [](const RodState& own) { return !own.q_rate.isZero(0.0); }) ||
          any(state.bodies, [](const rigid::Motion& own) { return !own.v.isZero(0.0) || !own.w.isZero(0.0); });
 }
 

@@ -20,7 +20,7 @@ struct RodState {
   rod::Mat3 turned = rod::Mat3::Identity();  ///< how far a floating base has turned
   Eigen::Matrix3Xd masses;                   ///< [m] where the mass points are
   Eigen::Matrix3Xd velocity;                 ///< [m/s] of the mass points
-  Eigen::VectorXd rate;                      ///< [1/s] of q, in the last step
+  Eigen::VectorXd q_rate;                    ///< of q per second, in the last step
   Eigen::MatrixXd internal;                  ///< internal forces, see sim/internal.hpp
 };
 

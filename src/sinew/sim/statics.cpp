@@ -79,7 +79,7 @@ void stop(State& state) {
   for (SolidState& own : state.solids) own.v.setZero();
   for (RodState& own : state.rods) {
     own.velocity.setZero();
-    own.rate.setZero();
+    own.q_rate.setZero();
   }
   for (rigid::Motion& own : state.bodies) {
     own.v.setZero();

@@ -72,8 +72,11 @@ double begin_step(Memory& memory, Guess guess) {
     find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm);
     clear = memory.here.contacts().clear;
   }
-  if (guess == Guess::moved_on) move_on(memory.context, clear, iterate.state);
   follow_points(memory.context, iterate.state, memory.here);
+  if (guess == Guess::moved_on) {  // where velocities lead does not decide which points a rod has left
+    move_on(memory.context, clear, iterate.state);
+    follow_points(memory.context, iterate.state, memory.here, Rows::stay);
+  }
   return spent;
 }
 
@@ -165,11 +168,12 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
   {
     const Lent lent(state, memory.context.start);
     memory.context.set(command, h);
+    double alarm = alarm_distance(memory.context);
+    NewtonRules own_rules = rules;
     const auto from = [&](Guess guess) {
-      NewtonRules own_rules = rules;
-      own_rules.on_trial = guess == Guess::moved_on;
-      return look_until_found(memory, alarm_distance(memory.context), [&] {
+      return look_until_found(memory, alarm, [&] {
         const double spent = begin_step(memory, guess);
+        own_rules.on_trial = guess == Guess::moved_on && memory.here.contacts().clear > 0.0;
         // What is prescribed stands in the context already.
         StepReport own = newton([](double, StepContext&) {}, memory, own_rules, memory.iterate);
         own.times.contact += spent;
@@ -179,8 +183,9 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
     // (A linearised step is one about its start. Commands that are looked for begin there, too.)
     const bool moves_on = !rules.fixed && !rules.inverse && memory.context.rate > 0.0 && moves(memory.context.start);
     report = from(moves_on ? Guess::moved_on : Guess::start);
-    if (moves_on && !accepted(report.status)) {
+    if (own_rules.on_trial && !accepted(report.status)) {
       const StepReport earlier = std::move(report);
+      alarm = memory.alarm;
       report = from(Guess::start);
       add_effort(earlier, report);
     }

@@ -51,11 +51,11 @@ void move_on(const StepContext& context, double part, State& guess) {
       guess.solids[i].x += time * context.start.solids[i].v;
   }
   place_held(context, guess);
-  for (std::size_t i = 0; i < guess.rods.size(); ++i) guess.rods[i].q += time * context.start.rods[i].rate;
+  for (std::size_t i = 0; i < guess.rods.size(); ++i) guess.rods[i].q += time * context.start.rods[i].q_rate;
   for (std::size_t i = 0; i < guess.bodies.size(); ++i) rigid::move_on(context.start.bodies[i], time, guess.bodies[i]);
 }
 
-void follow_points(const StepContext& context, State& iterate, Linearization& here) {
+void follow_points(const StepContext& context, State& iterate, Linearization& here, Rows rows) {
   int configured = -1;  // points of one rod stand together
   for (std::size_t k = 0; k < context.model.points.size(); ++k) {
     const PointModel& point = context.model.points[k];
@@ -69,7 +69,9 @@ void follow_points(const StepContext& context, State& iterate, Linearization& he
     }
     const Vec3 P = solid_point(context.model, iterate, point.solid, point.where);
     PointState& state = iterate.points[k];
+    if (rows == Rows::stay && !state.on) continue;
     state.s = constraint::project(shape, state.s, P);
+    if (rows == Rows::stay) continue;
     state.on = state.s <= rod.length();
     if (!state.on) {
       state.s = rod.length() * (1.0 + 1e-12);
@@ -109,7 +111,7 @@ void finish(const StepContext& context, State& next, Linearization& here) {
     rod::reconfigure(model.rods[i].rod, base_of(context, next, static_cast<int>(i)), own.q, shape);
     rod::mass_positions(shape, own.masses);
     own.velocity = (own.masses - context.start.rods[i].masses) * context.rate;
-    own.rate = (own.q - context.start.rods[i].q) * context.rate;
+    own.q_rate = (own.q - context.start.rods[i].q) * context.rate;
   }
   for (std::size_t i = 0; i < next.bodies.size(); ++i)
     rigid::set_velocities(context.start.bodies[i], context.rate, next.bodies[i]);

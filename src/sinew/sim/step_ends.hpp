@@ -13,13 +13,15 @@ void place_held(const StepContext& context, State& iterate);
 /// First guess of the end of the step: where the start is, carried along by moving frames.
 void first_guess(const StepContext& context, State& guess);
 
-/// Moves it on with the velocities of the start, for a part of the step; a solid that a moving frame carries stays.
+/// Moves it on with the velocities of the start, for a part of the step, or for as long as no body turns by more than a
+/// radian; a solid that a moving frame carries stays.
 void move_on(const StepContext& context, double part, State& guess);
 
 /// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
-/// that the end has reached again come on.
+/// that the end has reached again come on, unless they are to stay as they are.
 /// The rods' shapes stay with the linearisation, which then finds them.
-void follow_points(const StepContext& context, State& iterate, Linearization& here);
+enum class Rows { stay, switch_over };
+void follow_points(const StepContext& context, State& iterate, Linearization& here, Rows rows = Rows::switch_over);
 
 /// Velocities, mass points and what else belongs to an accepted step. Shapes of rods as above.
 void finish(const StepContext& context, State& next, Linearization& here);

@@ -196,7 +196,6 @@ void CoupledFactor::eliminate_chains(const CoupledProblem& problem) {
 
 void CoupledFactor::factor() {
   lu_.reset();
-  orthogonal_.reset();
   bool symmetric = chains_;
   for (const ChainPart& part : problem_->chains) symmetric &= part.chain.symmetric();
   for (const VolumePart& volume : problem_->volumes) symmetric &= volume.symmetric;
