@@ -70,14 +70,13 @@ bool meet_there(const ContactState& one, const Spot& p, const ContactState& othe
          std::abs(p.s - q.s) <= kSame * std::min(p.length, q.length);
 }
 
-/// Whether the place of a piece stands for that of a point of the rod beside it.
-bool stands_for(const ContactState& piece, const Spot& p, const ContactState& point, const Spot& q, double thin) {
+/// Whether a piece and a point of the rod beside it touch the same part at the same place.
+bool beside(const ContactState& piece, const Spot& p, const ContactState& point, const Spot& q) {
   constexpr double kBeside = 0.25;  // of the piece
-  constexpr double kAsNear = 0.01;  // of the thickness
   constexpr double kAlike = 0.9;    // cosine of the angle between the normals
   return p.on_piece && !q.on_piece && rod_side(piece, p).on == rod_side(point, q).on &&
          same_part(other_side(piece, p), other_side(point, q)) && std::abs(p.s - q.s) <= kBeside * p.length &&
-         p.gap <= q.gap + kAsNear * thin && p.normal.dot(q.normal) > kAlike;
+         p.normal.dot(q.normal) > kAlike;
 }
 
 /// The force of one that goes, to one that stays.
@@ -91,6 +90,7 @@ void hand_over(const ContactState& from, const Spot& by, ContactState& to, const
 }  // namespace
 
 void merge_rod_contacts(const Moment& start, const std::vector<double>& thin, std::vector<ContactState>& found) {
+  constexpr double kAsNear = 0.01;  // of the thickness
   std::vector<std::optional<Spot>> spots(found.size());
   std::vector<bool> goes(found.size(), false);
   const auto drop = [&](std::size_t gone, std::size_t kept) {
@@ -115,12 +115,12 @@ void merge_rod_contacts(const Moment& start, const std::vector<double>& thin, st
     drop(first ? j : i, first ? i : j);
   });
   each_of_pair([&](std::size_t i, std::size_t j, const Spot& p, const Spot& q) {
-    const double thickness = thin[static_cast<std::size_t>(found[i].pair)];
-    if (stands_for(found[i], p, found[j], q, thickness)) {
-      drop(j, i);
-    } else if (stands_for(found[j], q, found[i], p, thickness)) {
-      drop(i, j);
-    }
+    const bool point_last = beside(found[i], p, found[j], q);
+    if (!point_last && !beside(found[j], q, found[i], p)) return;
+    const std::size_t piece = point_last ? i : j, point = point_last ? j : i;
+    const double as_near = kAsNear * thin[static_cast<std::size_t>(found[i].pair)];
+    const bool piece_stays = spots[piece]->gap <= spots[point]->gap + as_near;
+    drop(piece_stays ? point : piece, piece_stays ? piece : point);
   });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {

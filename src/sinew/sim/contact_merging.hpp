@@ -11,8 +11,9 @@ namespace sinew {
 ///
 ///   * of two pieces that follow each other and touch the same part next to where they meet, that on which the nearest
 ///     point lies or, if neither or both have it, that which carries a force;
-///   * of a point of the rod and a piece that is nearest beside it, and as near but for a hundredth of the thickness,
-///     the piece, whose normal is perpendicular to the rod. The two rows differ only by how the rod bends in between:
+///   * of a point of the rod and a piece that is nearest beside it the piece, whose normal is perpendicular to the rod,
+///     unless the point is nearer by more than a hundredth of the thickness, as where the rod lies along what it
+///     touches and the piece's place is that of its chord. The two rows differ only by how the rod bends in between:
 ///     nearly dependent, their forces would be undecided, and Newton's iteration slow.
 ///
 /// `thin` [m] is the thickness of each pair's thinner object. A contact that stays takes over the force of one that
