@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace sinew::solve {
 
@@ -364,9 +365,14 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
   }
-  for (const double yield : kYields) {
+  for (const double& yield : kYields) {
     if (report.solved) break;
-    lambda = best_;
+    // (Sweeps may have to get worse before they get better: the last ones, which are many, begin afresh.)
+    if (&yield == std::end(kYields) - 1) {
+      lambda.setZero();
+    } else {
+      lambda = best_;
+    }
     for (int i = 0; i < sweeps; ++i, ++report.sweeps) sweep(problem, lambda);
     report.solved = keep();
     if (report.solved) break;
