@@ -22,13 +22,15 @@ struct Spot {
   Vec3 normal = Vec3::Zero();  ///< towards the rod
 };
 
+const ContactSide& rod_side(const ContactState& own) { return own.a.on.kind == Kind::rod ? own.a : own.b; }
+
 Spot spot_of(const Moment& start, const ContactState& own) {
   const Simplex a = start.placed(own.a), b = start.placed(own.b);
   contact::Nearest nearest = contact::nearest(a, b);
   follow_curves(start, own, a, b, nearest);
   Spot spot;
   spot.on_a = own.a.on.kind == Kind::rod;
-  const ContactSide& side = spot.on_a ? own.a : own.b;
+  const ContactSide& side = rod_side(own);
   const std::array<double, 3>& weights = spot.on_a ? nearest.a : nearest.b;
   spot.on_piece = side.local.corners() == 2;
   spot.at_end = weights[1] <= 0.0 || weights[1] >= 1.0;
@@ -39,7 +41,6 @@ Spot spot_of(const Moment& start, const ContactState& own) {
   return spot;
 }
 
-const ContactSide& rod_side(const ContactState& own, const Spot& spot) { return spot.on_a ? own.a : own.b; }
 const ContactSide& other_side(const ContactState& own, const Spot& spot) { return spot.on_a ? own.b : own.a; }
 
 bool same_part(const ContactSide& a, const ContactSide& b) {
@@ -54,19 +55,16 @@ bool of_one_rod(const ContactState& own) { return (own.a.on.kind == Kind::rod) !
 
 /// Whether two of them are of parts of one rod that overlap or follow each other.
 bool adjoin(const ContactState& one, const ContactState& other) {
-  const auto side = [](const ContactState& own) -> const ContactSide& {
-    return own.a.on.kind == Kind::rod ? own.a : own.b;
-  };
   const auto last = [](const ContactSide& own) { return own.abscissae[own.local.corners() == 2 ? 1 : 0]; };
-  const ContactSide &a = side(one), &b = side(other);
+  const ContactSide &a = rod_side(one), &b = rod_side(other);
   return a.on == b.on && a.abscissae[0] <= last(b) && b.abscissae[0] <= last(a);
 }
 
-/// Whether two pieces touch the same part at the same place.
+/// Whether two pieces of one rod touch the same part at the same place.
 bool meet_there(const ContactState& one, const Spot& p, const ContactState& other, const Spot& q) {
   constexpr double kSame = 0.1;  // of a piece
   if (!p.on_piece || !q.on_piece || p.on_a != q.on_a) return false;
-  return rod_side(one, p).on == rod_side(other, q).on && same_part(other_side(one, p), other_side(other, q)) &&
+  return same_part(other_side(one, p), other_side(other, q)) &&
          std::abs(p.s - q.s) <= kSame * std::min(p.length, q.length);
 }
 
@@ -74,9 +72,8 @@ bool meet_there(const ContactState& one, const Spot& p, const ContactState& othe
 bool beside(const ContactState& piece, const Spot& p, const ContactState& point, const Spot& q) {
   constexpr double kBeside = 0.25;  // of the piece
   constexpr double kAlike = 0.9;    // cosine of the angle between the normals
-  return p.on_piece && !q.on_piece && rod_side(piece, p).on == rod_side(point, q).on &&
-         same_part(other_side(piece, p), other_side(point, q)) && std::abs(p.s - q.s) <= kBeside * p.length &&
-         p.normal.dot(q.normal) > kAlike;
+  return p.on_piece && !q.on_piece && same_part(other_side(piece, p), other_side(point, q)) &&
+         std::abs(p.s - q.s) <= kBeside * p.length && p.normal.dot(q.normal) > kAlike;
 }
 
 /// The force of one that goes, to one that stays.

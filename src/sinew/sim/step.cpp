@@ -66,15 +66,14 @@ double begin_step(Memory& memory, Guess guess) {
   Iterate& iterate = memory.iterate;
   iterate.t = 1.0;
   first_guess(memory.context, iterate.state);
-  double spent = 0.0, clear = 1.0;
+  double spent = 0.0;
   if (!memory.context.model.pairs.empty()) {  // two readings of the clock cost more than to find none
     const Clock clock(spent);
     find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm);
-    clear = memory.here.contacts().clear;
   }
   follow_points(memory.context, iterate.state, memory.here);
   if (guess == Guess::moved_on) {  // where velocities lead does not decide which points a rod has left
-    move_on(memory.context, clear, iterate.state);
+    move_on(memory.context, memory.here.contacts().clear, iterate.state);
     follow_points(memory.context, iterate.state, memory.here, Rows::stay);
   }
   return spent;

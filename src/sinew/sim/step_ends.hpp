@@ -17,10 +17,12 @@ void first_guess(const StepContext& context, State& guess);
 /// radian; a solid that a moving frame carries stays.
 void move_on(const StepContext& context, double part, State& guess);
 
+/// What becomes of the rows of points that a rod's end has left, or reached again.
+enum class Rows { stay, switch_over };
+
 /// Abscissae of sliding points, continued from their last value; rows whose point has left the rod's end go off, those
 /// that the end has reached again come on, unless they are to stay as they are.
 /// The rods' shapes stay with the linearisation, which then finds them.
-enum class Rows { stay, switch_over };
 void follow_points(const StepContext& context, State& iterate, Linearization& here, Rows rows = Rows::switch_over);
 
 /// Velocities, mass points and what else belongs to an accepted step. Shapes of rods as above.

@@ -365,18 +365,14 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
   }
-  for (const double& yield : kYields) {
-    if (report.solved) break;
+  for (std::size_t turn = 0; turn < std::size(kYields) && !report.solved; ++turn) {
+    lambda = best_;
     // (Sweeps may have to get worse before they get better: the last ones, which are many, begin afresh.)
-    if (&yield == std::end(kYields) - 1) {
-      lambda.setZero();
-    } else {
-      lambda = best_;
-    }
+    if (turn + 1 == std::size(kYields)) lambda.setZero();
     for (int i = 0; i < sweeps; ++i, ++report.sweeps) sweep(problem, lambda);
     report.solved = keep();
     if (report.solved) break;
-    yield_ = yield;
+    yield_ = kYields[turn];
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
     sweeps *= 2;

@@ -20,7 +20,7 @@ def pressed(random_: random.Random) -> tuple[Scene, Judge]:
     scene["solids"]["beam"]["material"].update(young=10 ** random_.uniform(5, 6.5), poisson=random_.uniform(0.2, 0.42))
     scene["obstacles"]["ball"] = {"sphere": {"radius": radius}, "frame": "hand",
                                   "pose": {"translate": [x, y, 0.015 + radius + 0.003]}}
-    # (Slow enough for a beam that slides off a smooth ball: a motion of 1 s is 3 % ahead of it.)
+    # (Slow enough for a beam that slides off a smooth ball: in 1 s it comes 3 % less far.)
     slow = {**scene, "time": {"step": 0.02, "duration": 20.0}, "analysis": "dynamic"}
     slow["frames"] = {"hand": {"motion": {**scene["frames"]["hand"]["motion"], "times": [0, 20]}}}
     slow["solids"] = {"beam": {**scene["solids"]["beam"], "rayleigh": {"mass": 0.1, "stiffness": 0.02}}}
