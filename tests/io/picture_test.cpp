@@ -382,6 +382,19 @@ TEST_F(Picture, outputs_leave_their_ways_and_targets_stand_where_they_are) {
   EXPECT_GT(image.count(0x6b6b6b, 60, {400, 90, 500, 110}), 0);       // the outcome, behind the status
 }
 
+TEST_F(Picture, the_dot_is_green_only_without_warnings) {
+  constexpr std::uint32_t kGreen = 0x1b8a5a, kOrange = 0xc04000;
+  const Area header{60, 85, 700, 110};
+  PictureOptions options;
+  draw(beam(), beam(), options);
+  EXPECT_GT(Image(png_).count(kGreen, 20, header), 50);
+  EXPECT_EQ(Image(png_).count(kOrange, 20, header), 0);
+  options.warnings = 2;
+  draw(beam(), beam(), options);
+  EXPECT_EQ(Image(png_).count(kGreen, 20, header), 0);
+  EXPECT_GT(Image(png_).count(kOrange, 20, header), 50);
+}
+
 TEST_F(Picture, far_targets_do_not_make_the_robot_small) {
   const Snapshot rest = beam(), end = moved(rest, bent);
   PictureOptions options;

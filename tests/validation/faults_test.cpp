@@ -488,5 +488,28 @@ TEST(Faults, body_gains) {
   EXPECT_EQ(fault("body_gains", {"time.step=1 ms"}).warning("energy_gain"), nullptr);
 }
 
+// Rods are braked by the time step as they spin, by T = J omega^3 h: told beside the moment f R of friction. With m a =
+// m g - f and J a / R = f R - T of a solid cylinder, T = 1.5 (f - m g / 3) R.
+TEST(Faults, rod_spins_on_floor) {
+  const RecordedRun run = fault("rod_spins_on_floor");
+  ASSERT_TRUE(run.done()) << run.why();
+  const Warning* told = run.warning("spin_damped");
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->where, "rods.r");
+  const double mass = 1100.0 * std::numbers::pi * 0.02 * 0.02 * 0.1, friction = -run.last("f.y");
+  EXPECT_NEAR(told->value, 1.5 * (1.0 - mass * 2.5 / 3.0 / friction), 0.01);
+  EXPECT_GT(told->value, 0.4);
+  EXPECT_EQ(run.warning("coarse_rolling"), nullptr);
+}
+
+TEST(Faults, nothing_acts) {
+  const RecordedRun run = fault("nothing_acts");
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_EQ(run.warning("snapped"), nullptr);
+  EXPECT_LE(iterations_of(run), 20);
+  EXPECT_LT(run.largest("energy.work"), 1e-20);
+  EXPECT_NEAR(run.last("tip.x"), 0.204, 1e-12);
+}
+
 }  // namespace
 }  // namespace sinew::test

@@ -47,6 +47,7 @@ void merge(const Warning& warning, std::vector<Warning>& list) {
   found->steps += warning.steps;
   if (warning.latest || std::abs(warning.value) > std::abs(found->value)) {
     found->message = warning.message;
+    found->remedy = warning.remedy;
     found->value = warning.value;
     found->limit = warning.limit;
   }

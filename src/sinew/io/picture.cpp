@@ -201,9 +201,10 @@ void draw_header(const Page& page, const Snapshot& end, const PictureOptions& op
   std::replace(status.begin(), status.end(), '_', ' ');
   if (status.empty()) return;
   const double x = 60 + page.text_width(time, plain) + 20;
-  const bool good = accepted(end.status);
-  page.disc({x + 6, 97}, 6, good ? rgb(0x1b8a5a) : kWarning);
+  const bool good = accepted(end.status), quiet = options.warnings == 0;
+  page.disc({x + 6, 97}, 6, good && quiet ? rgb(0x1b8a5a) : kWarning);
   const TextStyle style{.size = 20, .color = good ? kGrey : kWarning, .bold = !good};
+  if (!quiet) status += fmt::format("; {} warning{}", options.warnings, options.warnings == 1 ? "" : "s");
   if (!options.outcome.empty()) status += "; targets: " + printable(options.outcome);
   page.text(x + 22, 104, page.fitted(status, style, 1480 - x), style);
 }

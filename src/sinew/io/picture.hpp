@@ -29,6 +29,7 @@ struct Course {
 struct PictureOptions {
   std::string title;
   std::string outcome = {};          ///< behind the status: what came of the targets
+  int warnings = 0;                  ///< behind the status, whose dot is then not green
   std::vector<Course> courses = {};  ///< of outputs that are more than their ends
   /// Drawn over the picture, with a legend of their own in place of that of displacements.
   std::vector<CloudPoint> cloud = {};

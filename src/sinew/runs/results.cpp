@@ -273,6 +273,7 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
     options.up = -model.scene.gravity;
     options.courses = courses(model, recording);
     options.outcome = recording.steps.back().targets;
+    options.warnings = static_cast<int>(all_warnings(model, summary, recording.steps).size());
     const io::RecordedStep &first = recording.steps.front(), &last = recording.steps.back();
     const std::string status = summary.end == "done" ? last.status
                                : summary.end == "numerical_stop"

@@ -155,6 +155,13 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       report.detail = known + (report.detail.empty() ? "" : "; ") + report.detail;
     return report;
   };
+  const auto nothing_holds = [&] {
+    const bool by_contact = context.rate == 0.0 && !context.model.pairs.empty();
+    return fail(Status::singular, std::string("constraint rows and rods") +
+                                      (by_contact ? "; what nothing but contact holds at rest is found with `analysis: "
+                                                    "dynamic` and damping"
+                                                  : ""));
+  };
   const auto complete = [&] {
     finish(context, iterate.state, here);
     const bool evaluated = !rules.fixed || rules.evaluation == Evaluation::full;
@@ -297,14 +304,14 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     }
     report.redundant |= increment.reduced.redundant;
     if (here.stalled()) return fail(Status::singular, std::string("solids") + single);
-    if (!increment.reduced.ok) return fail(Status::singular, "constraint rows and rods");
+    if (!increment.reduced.ok) return nothing_holds();
     // (Of both before anything is made smallest: a difference of multipliers that nothing answers means nothing.)
     if (rules.across) change_along(at, memory, iterate, report.times);
     for (const RedundantRows& own : here.reduced().redundant)
       own.make_smallest(iterate.state.lambda, increment.reduced.dlambda);
     if (rules.across) {
       const Increment& change = memory.change;
-      if (!change.reduced.ok) return fail(Status::singular, "constraint rows and rods");
+      if (!change.reduced.ok) return nothing_holds();
       const Eigen::VectorXd& n = rules.across->direction;
       const Model& model = context.model;
       const double dt = -n.dot(measured(model, increment)) / (n.dot(measured(model, change)) + rules.across->rate);

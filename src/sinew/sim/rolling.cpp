@@ -20,6 +20,8 @@ constexpr double kMatters = 1e-7;  ///< of the scene's size: less in a step is n
 constexpr double kRolls = 1e-3;    ///< of how far the surfaces turn: what comes with them does not roll
 constexpr double kSticks = 0.999;  ///< of the friction there is
 constexpr double kStands = 1e-3;   ///< sine of the tilt below which the lowest point of a rim is chance
+constexpr double kDamped = 0.1;    ///< of the moment that turns a rod
+constexpr double kSpins = 0.01;    ///< [rad] in a step: a tenth of the energy of spin in a revolution
 
 /// How far a surface moves past a contact beyond its core, by how much the chord is off, and how far it would move past
 /// something that stands still.
@@ -61,6 +63,55 @@ Rolled rolled(const ContactSide& side, const Simplex& placed, const std::array<d
   return rolled(R, axes(axis, arm) * axes(axis_before, arm_before).transpose(), arm);
 }
 
+/// About a rod's axis, what turns it where it is touched, and how far it spins there in the step.
+struct Spin {
+  double moment = 0.0;  ///< [N m]
+  double turn = 0.0;    ///< [rad]
+};
+
+std::vector<Warning> assess_spin(const StepContext& context, const State& next, const ContactRoom& room) {
+  const Model& model = context.model;
+  std::vector<Spin> spins(model.rods.size());
+  for (std::size_t i = 0; i < next.contacts.size(); ++i) {
+    const Touch& touch = room.touches[i];
+    if (touch.force.isZero(0.0)) continue;
+    each_side(next.contacts[i], touch,
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& point, double sign) {
+                if (side.on.kind != Kind::rod) return;
+                const double s = abscissa_of(side, weights);
+                const rod::Branch from = rod::branch(room.start[side.on.number], s),
+                                  to = rod::branch(room.now[side.on.number], s);
+                const Vec3 axis = to.R.col(0);
+                Spin& own = spins[static_cast<std::size_t>(side.on.number)];
+                own.moment += sign * axis.dot((point - to.p).cross(touch.force));
+                const double turn = axis.dot(lie::log(to.R * from.R.transpose()));
+                if (std::abs(turn) > std::abs(own.turn)) own.turn = turn;
+              });
+  }
+  double worst = kDamped, step = 0.0;
+  int damped = -1;
+  for (std::size_t n = 0; n < spins.size(); ++n) {
+    double inertia = 0.0;  // polar, of the whole rod
+    for (const rod::MassPoint& point : model.rods[n].rod.masses) inertia += point.mass * point.offset.squaredNorm();
+    const double turn = std::abs(spins[n].turn), moment = std::abs(spins[n].moment),
+                 drag = 2.0 * inertia * std::sin(turn) * (1.0 - std::cos(turn)) * context.rate * context.rate;
+    if (turn <= kSpins || !(drag > worst * moment)) continue;
+    worst = drag / moment;
+    step = context.h * std::max(kDamped / worst, kSpins / turn);
+    damped = static_cast<int>(n);
+  }
+  if (damped < 0) return {};
+  return {{.code = "spin_damped",
+           .where = "rods." + model.rods[static_cast<std::size_t>(damped)].name,
+           .message = "the time step brakes its spin by " + three_digits(100.0 * worst) +
+                      " % of the moment with which contacts turn it",
+           .remedy = "take steps of " + three_digits(1e3 * step) + " ms or less, or make a `body` of what is stiff",
+           .time = next.time,
+           .value = worst,
+           .limit = kDamped,
+           .steps = 1}};
+}
+
 }  // namespace
 
 std::vector<Warning> assess_rolling(const StepContext& context, const State& next, const ContactRoom& room) {
@@ -91,16 +142,19 @@ std::vector<Warning> assess_rolling(const StepContext& context, const State& nex
     worst = off / way;
     pair = own.pair;
   }
-  if (pair < 0) return {};
-  return {{.code = "coarse_rolling",
-           .where = "contact",
-           .message = name_of_pair(context.model, pair) + " roll on each other " + three_digits(100.0 * worst) +
-                      " % off: they turn by too much in a step",
-           .remedy = "take steps of " + three_digits(1e3 * context.h * std::sqrt(kCoarse / worst)) + " ms or less",
-           .time = next.time,
-           .value = worst,
-           .limit = kCoarse,
-           .steps = 1}};
+  std::vector<Warning> warnings = assess_spin(context, next, room);
+  if (pair < 0) return warnings;
+  warnings.push_back(
+      {.code = "coarse_rolling",
+       .where = "contact",
+       .message = name_of_pair(context.model, pair) + " roll on each other " + three_digits(100.0 * worst) +
+                  " % off: they turn by too much in a step",
+       .remedy = "take steps of " + three_digits(1e3 * context.h * std::sqrt(kCoarse / worst)) + " ms or less",
+       .time = next.time,
+       .value = worst,
+       .limit = kCoarse,
+       .steps = 1});
+  return warnings;
 }
 
 }  // namespace sinew

@@ -10,6 +10,13 @@
 //
 // The difference vanishes where the contact turns with the object (R = Q: a jaw that turns about what lies in it) and
 // where the object turns about the normal; of a wheel it is R (phi - sin(phi)), R phi^3 / 6.
+//
+// Rods are braked besides. Backward Euler moves the points of a cross-section along chords: at x_n = r(n phi) of a
+// circle the inertia m (x_n+1 - 2 x_n + x_n-1) / h^2 of a steady spin has the moment
+//
+//     J (2 sin(phi) - sin(2 phi)) / h^2 = 2 J sin(phi) (1 - cos(phi)) / h^2,      nearly J omega^3 h,
+//
+// about the axis, J the polar moment of inertia. It is told beside the moment of what touches the rod.
 #pragma once
 
 #include <vector>
@@ -19,7 +26,8 @@
 
 namespace sinew {
 
-/// Warnings `coarse_rolling` of contacts that stick, one at most. `room` must hold all contacts of `next`, evaluated.
+/// Warnings `coarse_rolling` of contacts that stick and `spin_damped` of rods that are touched, one of each at most.
+/// `room` must hold all contacts of `next`, evaluated.
 std::vector<Warning> assess_rolling(const StepContext& context, const State& next, const ContactRoom& room);
 
 }  // namespace sinew

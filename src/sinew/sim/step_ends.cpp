@@ -204,7 +204,9 @@ double inertia_of(const StepContext& context) {
 
 Convergence convergence_of(const Model& model, const Linearization& here, double stiffness) {
   const double tolerance = model.scene.newton.tolerance;
-  const double floor = 1e-14 * stiffness * model.size, allowed = tolerance * here.scale() + floor;
+  constexpr double kNothing = 1e-20;  // of what bodies bear: where no force acts, what is left is no force either
+  const double floor = 1e-14 * stiffness * model.size + kNothing * model.bearing,
+               allowed = tolerance * here.scale() + floor;
   const bool forces = here.largest() <= allowed;
   return {forces && here.violation() <= tolerance * model.size, forces && here.largest() > tolerance * here.scale(),
           allowed};

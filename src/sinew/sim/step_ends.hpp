@@ -49,15 +49,15 @@ double inertia_of(const StepContext& context);
 
 /// What `converged` means of forces and rows, here and nowhere else:
 ///
-///     largest unbalanced force <= tolerance x largest force + 1e-14 x stiffness x size,   violation <= tolerance x
-///     size,
+///     largest unbalanced force <= tolerance x largest force + 1e-14 x stiffness x size + 1e-20 x bearing,
+///     violation <= tolerance x size,
 ///
 /// with the scene's `newton.tolerance` (1e-9), the largest force that acts anywhere, `stiffness` [N/m] the largest
-/// diagonal entry of the volumes' matrices and of inertia over h^2, and the size of the scene. The second term of
-/// forces is their floor: positions are known to 1e-16 of the size, so that forces are not known better than that times
-/// a stiffness, whatever they add up to. Where it decides, the relative residual may be anything (`at_floor`). Contacts
-/// come besides
-/// (`Linearization::contact_error`).
+/// diagonal entry of the volumes' matrices and of inertia over h^2, the size of the scene, and what its bodies bear
+/// (`Model::bearing`). The other terms of forces are their floor: positions are known to 1e-16 of the size, so that
+/// forces are not known better than that times a stiffness, whatever they add up to; and where nothing acts, rods that
+/// move as they are leave rounding alone, which nothing is large beside. Where the floor decides, the relative residual
+/// may be anything (`at_floor`). Contacts come besides (`Linearization::contact_error`).
 struct Convergence {
   bool met = false;
   bool at_floor = false;  ///< forces meet their floor, not the tolerance
