@@ -212,7 +212,7 @@ ContactForces::At ContactForces::at(const StepContext& context, const State& ite
 
 void ContactForces::solve(const StepContext& context, const State& iterate, const ContactRoom& room,
                           std::vector<FreeMotion>& free, solve::CoupledFactor& factor, solve::CoupledSolution& solution,
-                          ContactChange& change) {
+                          ContactChange& change, const Eigen::VectorXd* beyond) {
   constexpr int kMostTurns = 50;
   const Eigen::Index n = 3 * Eigen::Index{contacts()};
   problem_.b.resize(n);
@@ -225,6 +225,7 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
   rows_.resize(n);
   motion_of(context, free, solution, true, rows_);
   problem_.b += rows_ - problem_.D * old_;
+  if (beyond) problem_.b += *beyond;
   // What nothing answers stays as it is; where it closes all the same, no force would stop it.
   unanswered_ = -1;
   const double little = context.model.scene.newton.tolerance * context.model.size;
@@ -239,7 +240,7 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     solution.ok = false;
     return;
   }
-  lambda_ = old_;
+  if (!beyond) lambda_ = old_;
   rows_ = iterate.lambda + solution.dlambda;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     // What presses a rod against its channel depends on its friction elsewhere: along the rod each turn settles one

@@ -36,9 +36,11 @@ class ContactForces {
   /// How many directions in which the step's matrix A is negative are held by contacts that press and stick: the
   /// negative eigenvalues of their part of D. `prepare` must have gone before.
   int held(const ContactRoom& room) const;
-  /// Finds the forces that go with the solution so far, and adds to it what they change.
+  /// Finds the forces that go with the solution so far, and adds to it what they change. Where the rows are known to
+  /// move by e [m] `beyond` J dx (sim/contact_correction), it begins with the forces that it found last.
   void solve(const StepContext& context, const State& iterate, const ContactRoom& room, std::vector<FreeMotion>& free,
-             solve::CoupledFactor& factor, solve::CoupledSolution& solution, ContactChange& change);
+             solve::CoupledFactor& factor, solve::CoupledSolution& solution, ContactChange& change,
+             const Eigen::VectorXd* beyond = nullptr);
   /// Other forces, where the solution has been changed since by what moves the rows by `moved` [m].
   void change(const StepContext& context, const ContactRoom& room, std::vector<FreeMotion>& free,
               solve::CoupledFactor& factor, const Eigen::VectorXd& moved, const Eigen::VectorXd& lambda,

@@ -320,7 +320,8 @@ void Linearization::respond(const std::vector<Eigen::VectorXd>& solids, solve::R
 }
 
 void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side,
-                           Increment& increment, const Steer& steer, std::optional<solve::CoupledFactor::Part> rough) {
+                           Increment& increment, const Steer& steer, std::optional<solve::CoupledFactor::Part> rough,
+                           const Eigen::VectorXd* beyond) {
   const Model& model = context_->model;
   if (rough && !ContactForces::wanted(model, contacts_)) {
     factor_.answer(side, increment.reduced, *rough);
@@ -333,7 +334,8 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
     {
       const Clock clock(spent);
       prepare_contacts();
-      contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces);
+      contact_forces_.solve(*context_, *iterate_, contacts_, free_, factor_, increment.reduced, increment.forces,
+                            beyond);
     }
     times_->contact += spent;
     times_->solve -= spent;  // whose clock runs
@@ -351,6 +353,82 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
   for (std::size_t i = 0; i < free_.size(); ++i)
     free_[i].correct(model.solids[i], model, increment.reduced.dlambda, increment.dx[i]);
   if (model.scene.newton.precision == linalg::Precision::float32) refine(solids, increment);
+}
+
+double Linearization::beyond_tangent(const Increment& increment, const ContactsBeyond& solved) {
+  const StepContext& context = *context_;
+  const Model& model = context.model;
+  trial_ = *iterate_;
+  advance_by(context, increment, 1.0, trial_);
+  trial_room_.start = contacts_.start;
+  trial_room_.facings = contacts_.facings;
+  trial_room_.least = contacts_.least;
+  evaluate_contacts(context, trial_, trial_room_);
+  forces_here_.clear();
+  forces_there_.clear();
+  for (std::size_t i = 0; i < contacts_.touches.size(); ++i) {
+    forces_here_.push_back(increment.forces.contacts[i].from + increment.forces.contacts[i].more);
+    forces_there_.push_back(trial_room_.touches[i].force);
+  }
+  contacts_beyond_tangent(model, {*iterate_, contacts_, forces_here_}, {trial_, trial_room_, forces_there_},
+                          increment.dx, increment.reduced, beyond_);
+  const std::vector<int>& touching = contact_forces_.touching();
+  beyond_.u.setZero(contact_forces_.problem().b.size());
+  contact_forces_.motion_of(context, free_, increment.reduced, true, beyond_.u);
+  beyond_.u = -beyond_.u;
+  beyond_.u.tail(beyond_.u.size() - 3 * static_cast<Eigen::Index>(touching.size())).setZero();  // rods in channels
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    const auto at = static_cast<std::size_t>(touching[i]);
+    beyond_.u.segment<3>(3 * static_cast<Eigen::Index>(i)) += trial_room_.touches[at].u - contacts_.touches[at].u;
+  }
+  double force = 0.0;
+  for (std::size_t i = 0; i < beyond_.nodes.size(); ++i) {
+    if (beyond_.nodes[i].cols() > 0)
+      force = std::max(force, (beyond_.nodes[i] - solved.nodes[i]).cwiseAbs().maxCoeff());
+  }
+  for (std::size_t i = 0; i < beyond_.rods.size(); ++i) {
+    if (beyond_.rods[i].size() > 0)
+      force = std::max(force, (beyond_.rods[i] - solved.rods[i]).cwiseAbs().maxCoeff() / model.size);
+  }
+  if (model.unknowns > 0)
+    force = std::max(force, ((beyond_.z - solved.z).array() / model.arms.array()).abs().maxCoeff());
+  const double row = beyond_.u.size() > 0 ? (beyond_.u - solved.u).cwiseAbs().maxCoeff() : 0.0;
+  return force / scale_ + row / model.size;
+}
+
+void Linearization::correct_contacts(double enough, Increment& increment) {
+  constexpr int kMostTurns = 3;
+  constexpr double kContracts = 0.5;
+  const Model& model = context_->model;
+  const auto presses = [](const ContactChange::Force& own) { return !(own.from + own.more).isZero(0.0); };
+  if (!increment.reduced.ok ||
+      std::none_of(increment.forces.contacts.begin(), increment.forces.contacts.end(), presses))
+    return;
+  const Clock clock(times_->contact);
+  solved_.z.setZero(model.unknowns);
+  solved_.u.setZero(contact_forces_.problem().b.size());
+  solved_.nodes.resize(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) solved_.nodes[i].setZero(3, model.solids[i].body.rest.cols());
+  solved_.rods.resize(model.rods.size());
+  for (std::size_t i = 0; i < model.rods.size(); ++i) solved_.rods[i].setZero(model.rods[i].rod.strain_coordinates());
+  double left = beyond_tangent(increment, solved_);
+  for (int turn = 0; turn < kMostTurns && left > enough; ++turn) {
+    before_ = increment;
+    std::swap(beyond_, solved_);
+    solve::right_side(reduced_.problem, side_);
+    side_.r += solved_.z;
+    for (std::size_t i = 0; i < solved_.rods.size(); ++i) side_.chains[i] += solved_.rods[i];
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      solid::at_unknowns(model.solids[i].body, solved_.nodes[i], pushes_[i]);
+      pushes_[i] = -forces_[i].r - pushes_[i];
+    }
+    push(pushes_, side_);
+    follow(pushes_, side_, increment, {}, {}, &solved_.u);
+    const double last = std::exchange(left, increment.reduced.ok ? beyond_tangent(increment, solved_) : NAN);
+    if (left <= kContracts * last) continue;
+    increment = before_;
+    break;
+  }
 }
 
 void Linearization::refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "sinew/sim/contact_correction.hpp"
 #include "sinew/sim/contact_forces.hpp"
 #include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/reduced.hpp"
@@ -90,6 +91,9 @@ class Linearization {
   }
   void solve(const Linearization& right, Increment& increment, const Steer& steer = {},
              std::optional<solve::CoupledFactor::Part> rough = {});
+  /// Corrects an increment that was solved for here, with what contacts do beyond the tangent (sim/contact_correction),
+  /// as long as that contracts and more than `enough` of forces and rows would be left of it.
+  void correct_contacts(double enough, Increment& increment);
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
@@ -143,7 +147,11 @@ class Linearization {
   void push(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side);
   /// What comes after volumes have been pushed.
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
-              const Steer& steer, std::optional<solve::CoupledFactor::Part> rough = {});
+              const Steer& steer, std::optional<solve::CoupledFactor::Part> rough = {},
+              const Eigen::VectorXd* beyond = nullptr);
+  /// E and e of an increment, in `beyond_`; by how much they differ from those that it was solved with, of the largest
+  /// force and of the scene's size.
+  double beyond_tangent(const Increment& increment, const ContactsBeyond& solved);
   /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
   void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 
@@ -170,6 +178,11 @@ class Linearization {
   bool contacts_ready_ = false;  ///< their compliance is that of these factors
   std::vector<Eigen::VectorXd> pushes_;
   solve::RightSide side_;
+  State trial_;  ///< where an increment leads, and contacts there
+  ContactRoom trial_room_;
+  std::vector<Vec3> forces_here_, forces_there_;
+  ContactsBeyond beyond_, solved_;
+  Increment before_;
   std::vector<Eigen::VectorXd> left_;  ///< by a refinement, of which these are the rest and a part
   solve::RightSide rest_;
   Increment part_;

@@ -207,6 +207,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   bool again = false;  // an iteration is made once more
   int steady = 0;      // iterations that have made what is off smaller, one after the other
   constexpr double kContracts = 0.8;
+  constexpr double kCorrected = 1e-4;  // contacts are corrected to this at least, and as Newton contracts
   constexpr int kSteady = 4, kPatience = 3, kTrial = 2;
   for (;; ++report.newton) {
     if (report.newton == 0 || rules.across) {
@@ -324,6 +325,11 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     double fraction = 1.0;
     if (!rules.fixed) {
       fraction = trusted_fraction(context, increment);
+      if (fraction == 1.0 && !rules.inverse && !context.model.pairs.empty()) {
+        here.correct_contacts(std::max(0.5 * context.model.scene.newton.tolerance, std::min(kCorrected, off * off)),
+                              increment);
+        fraction = trusted_fraction(context, increment);
+      }
     } else if (std::string lost = beyond_trust(context, increment); !lost.empty()) {
       return fail(Status::diverged, std::move(lost));
     }

@@ -1,0 +1,131 @@
+#include "sinew/sim/contact_correction.hpp"
+
+namespace sinew {
+
+namespace {
+
+using Kind = Collider::Kind;
+
+void add_on_rod(const RodModel& rod, int number, const Eigen::MatrixXd& J, const Vec3& force, ContactsBeyond& beyond) {
+  const int base = rod.rod.base_coordinates();
+  if (base > 0) beyond.z.segment(rod.unknown, base) += J.leftCols(base).transpose() * force;
+  beyond.rods[static_cast<std::size_t>(number)] += J.rightCols(rod.rod.strain_coordinates()).transpose() * force;
+}
+
+/// What contacts leave unbalanced, J^T f times `factor`; of rods as they are `there`.
+class Unbalanced {
+ public:
+  Unbalanced(const Model& model, const ContactsAt& there, ContactsBeyond& beyond)
+      : model_(model), there_(there), beyond_(beyond) {}
+
+  void add(const ContactsAt& at, double factor) {
+    for (std::size_t i = 0; i < at.forces.size(); ++i) {
+      if (at.forces[i].isZero(0.0)) continue;
+      const Touch& touch = at.room.touches[i];
+      each_side(at.state.contacts[i], touch,
+                [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& point, double sign) {
+                  const Vec3 force = factor * sign * at.forces[i];
+                  const auto number = static_cast<std::size_t>(side.on.number);
+                  switch (side.on.kind) {
+                    case Kind::obstacle:
+                      break;
+                    case Kind::body: {
+                      auto z = beyond_.z.segment<6>(model_.bodies[number].unknown);
+                      z.head<3>() += force;
+                      z.tail<3>() += (point - at.state.bodies[number].p).cross(force);
+                      break;
+                    }
+                    case Kind::solid:
+                      for (int k = 0; k < side.local.corners(); ++k)
+                        beyond_.nodes[number].col(side.nodes[k]) += weights[static_cast<std::size_t>(k)] * force;
+                      break;
+                    case Kind::rod:
+                      add_rod(at, touch, side, abscissa_of(side, weights), point, sign, force);
+                      break;
+                  }
+                });
+    }
+  }
+
+ private:
+  /// A force on the material point of a rod that has it `at`, as add_touches has it (sim/reduced): what presses acts
+  /// through the axis.
+  void add_rod(const ContactsAt& at, const Touch& touch, const ContactSide& side, double s, const Vec3& point,
+               double sign, const Vec3& force) {
+    const auto number = static_cast<std::size_t>(side.on.number);
+    const rod::Configuration& now = there_.room.now[number];
+    const rod::Branch section = rod::branch(at.room.now[number], s);
+    const Vec3 &n = touch.nearest.normal, normal = n * n.dot(force),
+               surface = section.R.transpose() * (point - section.p),
+               out = section.R.transpose() * (sign * -n * side.local.radius);
+    const Vec3 axis = side.local.corners() == 1 ? Vec3(Vec3::Zero()) : Vec3(surface - out);
+    const auto add_at = [&](const Vec3& offset, const Vec3& own) {
+      add_on_rod(model_.rods[number], side.on.number, rod::position_jacobian(now, s, offset), own, beyond_);
+    };
+    add_at(axis, normal);
+    add_at(surface, force - normal);
+  }
+
+  const Model& model_;
+  const ContactsAt& there_;
+  ContactsBeyond& beyond_;
+};
+
+/// A_c dx of solids, and of the part that A has of rods beside forces on fixed points: taken away.
+void take_curvature(const Model& model, const ContactsAt& here, const std::vector<Eigen::Matrix3Xd>& dx,
+                    const solve::CoupledSolution& reduced, ContactsBeyond& beyond) {
+  for (std::size_t i = 0; i < here.forces.size(); ++i) {
+    const Touch& touch = here.room.touches[i];
+    const ContactState& contact = here.state.contacts[i];
+    const auto of_solid = [&](const ContactSide& side, Eigen::Index first) {
+      if (side.on.kind != Kind::solid) return;
+      const auto number = static_cast<std::size_t>(side.on.number);
+      for (Eigen::Index k = 0; k < side.local.corners(); ++k) {
+        for (Eigen::Index l = 0; l < side.local.corners(); ++l)
+          beyond.nodes[number].col(side.nodes[static_cast<std::size_t>(k)]) -=
+              touch.stiffness.block<3, 3>(first + 3 * k, first + 3 * l) *
+              dx[number].col(side.nodes[static_cast<std::size_t>(l)]);
+      }
+    };
+    if (touch.stiffness.rows() > 0) {
+      of_solid(contact.a, 0);
+      of_solid(contact.b, 3 * Eigen::Index{contact.a.local.corners()});
+    }
+    if (touch.of_rod.isZero(0.0)) continue;
+    const bool on_a = contact.a.on.kind == Kind::rod;
+    const ContactSide& side = on_a ? contact.a : contact.b;
+    const auto number = static_cast<std::size_t>(side.on.number);
+    const RodModel& rod = model.rods[number];
+    const rod::Configuration& shape = here.room.now[number];
+    const double s = abscissa_of(side, on_a ? touch.nearest.a : touch.nearest.b);
+    const Vec3 point = on_a ? touch.point_a : touch.point_b, out = (on_a ? -1.0 : 1.0) * touch.nearest.normal,
+               axis = side.local.corners() == 1 ? rod::position(shape, s) : Vec3(point - side.local.radius * out);
+    rod::Matrix6X motion = rod::twists_at(shape, s);
+    for (Eigen::Index k = 0; k < motion.cols(); ++k)
+      motion.col(k).tail<3>() = rod::moved(motion.col(k), axis - shape.origin);
+    const int base = rod.rod.base_coordinates(), strains = rod.rod.strain_coordinates();
+    rod::Vec6 moved = motion.rightCols(strains) * reduced.dq[number];
+    if (base > 0) moved += motion.leftCols(base) * reduced.dz.segment(rod.unknown, base);
+    const rod::Vec6 acts = touch.of_rod * moved;
+    if (base > 0) beyond.z.segment(rod.unknown, base) -= motion.leftCols(base).transpose() * acts;
+    beyond.rods[number] -= motion.rightCols(strains).transpose() * acts;
+  }
+}
+
+}  // namespace
+
+void contacts_beyond_tangent(const Model& model, const ContactsAt& here, const ContactsAt& there,
+                             const std::vector<Eigen::Matrix3Xd>& dx, const solve::CoupledSolution& reduced,
+                             ContactsBeyond& beyond) {
+  beyond.z.setZero(model.unknowns);
+  beyond.nodes.resize(model.solids.size());
+  for (std::size_t i = 0; i < beyond.nodes.size(); ++i) beyond.nodes[i].setZero(3, model.solids[i].body.rest.cols());
+  beyond.rods.resize(model.rods.size());
+  for (std::size_t i = 0; i < beyond.rods.size(); ++i) beyond.rods[i].setZero(model.rods[i].rod.strain_coordinates());
+  Unbalanced unbalanced(model, there, beyond);
+  unbalanced.add(there, -1.0);
+  unbalanced.add(here, 1.0);
+  take_curvature(model, here, dx, reduced, beyond);
+}
+
+}  // namespace sinew
