@@ -29,6 +29,7 @@ class Search {
                    [this](const ContactSide& a, const ContactSide& b, std::uint64_t key) { add(a, b, key); });
       return;
     }
+    if (!whole_pieces && !around(own.a).intersects(around(own.b))) return;
     points_and_faces(own.a, own.b, Part::point_of_first);
     if (own.a != own.b) points_and_faces(own.b, own.a, Part::point_of_second);
     const auto bent = [this](const ContactSide& side, double thick) {
@@ -253,6 +254,9 @@ class Search {
 
   /// Of all of an object, and the alarm distance around.
   contact::Box around(const Collider& own) const {
+    const auto known =
+        std::find_if(around_.begin(), around_.end(), [&own](const auto& one) { return one.first == own; });
+    if (known != around_.end()) return known->second;
     contact::Box box;
     if (const Surface* surface = surfaces_.of(own)) {
       box = surface->faces.whole();
@@ -268,7 +272,7 @@ class Search {
         box.extend(contact::Box(Vec3(p - r), Vec3(p + r)));
       }
     }
-    return grown(box);
+    return around_.emplace_back(own, grown(box)).second;
   }
 
   contact::Box grown(contact::Box box, double radius = 0.0) const {
@@ -516,6 +520,7 @@ class Search {
   std::vector<ContactState>& found_;
   int pair_ = 0;
   std::vector<contact::Meeting> meetings_;
+  mutable std::vector<std::pair<Collider, contact::Box>> around_;  ///< of the pair's two, once they were asked for
 };
 
 }  // namespace

@@ -363,7 +363,7 @@ std::vector<int> folded_cells(const Body& body, const Eigen::Matrix3Xd& x) {
   for (int e = 0; e < body.elements(); ++e) {
     const Cell& cell = body.cells[static_cast<std::size_t>(e)];
     if (cell.kind == Kind::tet4) {
-      const double at_rest = body.element(e).volumes[0];
+      const double at_rest = body.volumes[static_cast<std::size_t>(body.first_point[static_cast<std::size_t>(e)])];
       if (!(volume(cell, x) * at_rest > 0.0)) folded.push_back(e);
       continue;
     }
