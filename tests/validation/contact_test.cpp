@@ -138,7 +138,7 @@ TEST(Contact, TellsHowFarRollingIsOff) {
 
 // A contact that turns with both objects is no rolling, however far they turn in a step.
 TEST(Contact, WhatTurnsTogetherDoesNotRoll) {
-  Scene scene = on_floor(0.01, 0.02, 20.0);
+  Scene scene = on_floor(0.01, 0.02, 20.0);  // (of 100, a contact that hardly presses slides within the tolerance)
   Frame hand;
   hand.motion = FrameMotion{{0.0, 0.02}, {Vec3::Zero(), Vec3(0.8, 0, 0)}, {}};
   scene.frames.emplace_back("hand", hand);

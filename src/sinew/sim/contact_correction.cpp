@@ -1,5 +1,7 @@
 #include "sinew/sim/contact_correction.hpp"
 
+#include <Eigen/Geometry>
+
 namespace sinew {
 
 namespace {
@@ -12,13 +14,13 @@ void add_on_rod(const RodModel& rod, int number, const Eigen::MatrixXd& J, const
   beyond.rods[static_cast<std::size_t>(number)] += J.rightCols(rod.rod.strain_coordinates()).transpose() * force;
 }
 
-/// What contacts leave unbalanced, J^T f times `factor`; of rods as they are `there`.
+/// What forces of contacts leave unbalanced.
 class Unbalanced {
  public:
-  Unbalanced(const Model& model, const ContactsAt& there, ContactsBeyond& beyond)
-      : model_(model), there_(there), beyond_(beyond) {}
+  Unbalanced(const Model& model, ContactsBeyond& beyond) : model_(model), beyond_(beyond) {}
 
-  void add(const ContactsAt& at, double factor) {
+  /// J^T f times `factor`, on these `shapes` of rods.
+  void add(const ContactsAt& at, double factor, const std::vector<rod::Configuration>& shapes) {
     for (std::size_t i = 0; i < at.forces.size(); ++i) {
       if (at.forces[i].isZero(0.0)) continue;
       const Touch& touch = at.room.touches[i];
@@ -40,7 +42,7 @@ class Unbalanced {
                         beyond_.nodes[number].col(side.nodes[k]) += weights[static_cast<std::size_t>(k)] * force;
                       break;
                     case Kind::rod:
-                      add_rod(at, touch, side, abscissa_of(side, weights), point, sign, force);
+                      add_rod(at, shapes, touch, side, abscissa_of(side, weights), point, sign, force);
                       break;
                   }
                 });
@@ -50,36 +52,36 @@ class Unbalanced {
  private:
   /// A force on the material point of a rod that has it `at`, as add_touches has it (sim/reduced): what presses acts
   /// through the axis.
-  void add_rod(const ContactsAt& at, const Touch& touch, const ContactSide& side, double s, const Vec3& point,
-               double sign, const Vec3& force) {
+  void add_rod(const ContactsAt& at, const std::vector<rod::Configuration>& shapes, const Touch& touch,
+               const ContactSide& side, double s, const Vec3& point, double sign, const Vec3& force) {
     const auto number = static_cast<std::size_t>(side.on.number);
-    const rod::Configuration& now = there_.room.now[number];
     const rod::Branch section = rod::branch(at.room.now[number], s);
     const Vec3 &n = touch.nearest.normal, normal = n * n.dot(force),
                surface = section.R.transpose() * (point - section.p),
                out = section.R.transpose() * (sign * -n * side.local.radius);
     const Vec3 axis = side.local.corners() == 1 ? Vec3(Vec3::Zero()) : Vec3(surface - out);
     const auto add_at = [&](const Vec3& offset, const Vec3& own) {
-      add_on_rod(model_.rods[number], side.on.number, rod::position_jacobian(now, s, offset), own, beyond_);
+      add_on_rod(model_.rods[number], side.on.number, rod::position_jacobian(shapes[number], s, offset), own, beyond_);
     };
     add_at(axis, normal);
     add_at(surface, force - normal);
   }
 
   const Model& model_;
-  const ContactsAt& there_;
   ContactsBeyond& beyond_;
 };
 
 /// A_c dx of solids, and of the part that A has of rods beside forces on fixed points: taken away.
-void take_curvature(const Model& model, const ContactsAt& here, const std::vector<Eigen::Matrix3Xd>& dx,
-                    const solve::CoupledSolution& reduced, ContactsBeyond& beyond) {
+void take_curvature(const Model& model, const ContactsAt& here, const std::vector<char>& exact,
+                    const std::vector<Eigen::Matrix3Xd>& dx, const solve::CoupledSolution& reduced,
+                    ContactsBeyond& beyond) {
   for (std::size_t i = 0; i < here.forces.size(); ++i) {
     const Touch& touch = here.room.touches[i];
     const ContactState& contact = here.state.contacts[i];
     const auto of_solid = [&](const ContactSide& side, Eigen::Index first) {
       if (side.on.kind != Kind::solid) return;
       const auto number = static_cast<std::size_t>(side.on.number);
+      if (!exact[number]) return;
       for (Eigen::Index k = 0; k < side.local.corners(); ++k) {
         for (Eigen::Index l = 0; l < side.local.corners(); ++l)
           beyond.nodes[number].col(side.nodes[static_cast<std::size_t>(k)]) -=
@@ -114,18 +116,32 @@ void take_curvature(const Model& model, const ContactsAt& here, const std::vecto
 
 }  // namespace
 
-void contacts_beyond_tangent(const Model& model, const ContactsAt& here, const ContactsAt& there,
+void contacts_beyond_tangent(const Model& model, const ContactsAt& here, const std::vector<Vec3>& more,
+                             const ContactsAt& there, const std::vector<char>& exact,
                              const std::vector<Eigen::Matrix3Xd>& dx, const solve::CoupledSolution& reduced,
                              ContactsBeyond& beyond) {
+  clear(model, beyond);
+  Unbalanced unbalanced(model, beyond);
+  unbalanced.add(there, -1.0, there.room.now);
+  // (What a force on a fixed point of a rod does as the rod bends is in A, of those of the iterate.)
+  unbalanced.add(here, 1.0, there.room.now);
+  unbalanced.add({here.state, here.room, more}, 1.0, here.room.now);
+  take_curvature(model, here, exact, dx, reduced, beyond);
+}
+
+void clear(const Model& model, ContactsBeyond& beyond) {
   beyond.z.setZero(model.unknowns);
   beyond.nodes.resize(model.solids.size());
   for (std::size_t i = 0; i < beyond.nodes.size(); ++i) beyond.nodes[i].setZero(3, model.solids[i].body.rest.cols());
   beyond.rods.resize(model.rods.size());
   for (std::size_t i = 0; i < beyond.rods.size(); ++i) beyond.rods[i].setZero(model.rods[i].rod.strain_coordinates());
-  Unbalanced unbalanced(model, there, beyond);
-  unbalanced.add(there, -1.0);
-  unbalanced.add(here, 1.0);
-  take_curvature(model, here, dx, reduced, beyond);
+}
+
+Vec3 contact_beyond_rows(const Touch& here, const Touch& there, const Vec3& moved) {
+  const auto back = Eigen::Quaterniond::FromTwoVectors(there.nearest.normal, here.nearest.normal);
+  const Vec3 u =
+      there.u[0] * here.nearest.normal + back * Vec3(there.frame.col(1) * there.u[1] + there.frame.col(2) * there.u[2]);
+  return here.frame.transpose() * u - here.u - moved;
 }
 
 }  // namespace sinew

@@ -23,16 +23,25 @@ struct ContactsBeyond {
   Eigen::VectorXd u;                    ///< [m] e, of the rows of all contacts
 };
 
-/// Contacts at an iterate, or where an increment leads from it, and their forces [N] there.
+void clear(const Model& model, ContactsBeyond& beyond);
+
+/// Contacts at an iterate, or where an increment leads from it, and forces [N] there, in the world.
 struct ContactsAt {
   const State& state;
   const ContactRoom& room;
   const std::vector<Vec3>& forces;
 };
 
-/// Finds E of an increment, `dx` of solids and `reduced`; e is another's part.
-void contacts_beyond_tangent(const Model& model, const ContactsAt& here, const ContactsAt& there,
+/// Finds E of an increment, `dx` of solids and `reduced`. Of the forces f those of the iterate are in A_c (`here`),
+/// `more` have come since; `there` has them all. Solids whose tangent is not the exact one (`exact`) have nothing of
+/// contacts in A.
+void contacts_beyond_tangent(const Model& model, const ContactsAt& here, const std::vector<Vec3>& more,
+                             const ContactsAt& there, const std::vector<char>& exact,
                              const std::vector<Eigen::Matrix3Xd>& dx, const solve::CoupledSolution& reduced,
                              ContactsBeyond& beyond);
+
+/// e of one contact, [m]: its u where the increment leads, as the least turn of the normal brings that back to the
+/// frame of the iterate (the frames themselves may jump), less u and J dx of the iterate.
+Vec3 contact_beyond_rows(const Touch& here, const Touch& there, const Vec3& moved);
 
 }  // namespace sinew

@@ -101,6 +101,7 @@ void ContactForces::bodies_motion(const solve::CoupledSolution& solution, Eigen:
 void ContactForces::prepare(const StepContext& context, const State& iterate, const ContactRoom& room,
                             const Reduced& reduced, std::vector<FreeMotion>& free, solve::CoupledFactor& factor) {
   add_rows(context, iterate, room, reduced);
+  unanswered_ = -1;
   const int n = 3 * contacts();
   problem_.D.setZero(n, n);
   problem_.mu.setOnes(n / 3);
@@ -224,6 +225,7 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
   }
   rows_.resize(n);
   motion_of(context, free, solution, true, rows_);
+  moved_rows_ = rows_;
   problem_.b += rows_ - problem_.D * old_;
   if (beyond) problem_.b += *beyond;
   // What nothing answers stays as it is; where it closes all the same, no force would stop it.
@@ -264,6 +266,7 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     rows_ = iterate.lambda + solution.dlambda + answer_.dlambda;
     if (rubbing_.empty()) break;
   }
+  moved_rows_ += problem_.D * (lambda_ - old_);
   change.contacts.clear();
   for (const Touch& touch : room.touches) change.contacts.push_back({touch.force, Vec3::Zero(), touch.nearest.normal});
   change.frictions.assign(rubbing_.size(), 0.0);

@@ -77,6 +77,9 @@ class ContactForces {
   const solve::CoulombProblem& problem() const { return problem_; }
   const Eigen::VectorXd& found() const { return lambda_; }
   const Eigen::VectorXd& had() const { return old_; }
+  /// [m] J dx of what `solve` has found; not of rows that nothing answers, and of rods that rub.
+  const Eigen::VectorXd& moved() const { return moved_rows_; }
+  bool answered(int contact) const { return answered_[static_cast<std::size_t>(contact)]; }
   /// Which contacts of the iterate these are.
   const std::vector<int>& touching() const { return touching_; }
 
@@ -131,7 +134,7 @@ class ContactForces {
   solve::Coulomb coulomb_;
   ContactReport report_;
   std::vector<Eigen::MatrixXd> moved_;  ///< of each rod, its coordinates by each row
-  Eigen::VectorXd lambda_, old_, own_, rows_;
+  Eigen::VectorXd lambda_, old_, own_, rows_, moved_rows_;
 };
 
 }  // namespace sinew

@@ -266,9 +266,10 @@ class Search {
       box = contact::Box(Vec3(pose.p - reach), Vec3(pose.p + reach));
     } else {
       const RodModel& rod = start_.model.rods[own.number];
+      double thick = 0.0;  // (pieces are as thick as the thicker of their ends)
+      for (const double s : rod.touching) thick = std::max(thick, rod::radius_at(rod.rod.profile, s));
       for (const double s : rod.touching) {
-        const Vec3 p = rod::position(start_.rods[own.number], s),
-                   r = Vec3::Constant(rod::radius_at(rod.rod.profile, s));
+        const Vec3 p = rod::position(start_.rods[own.number], s), r = Vec3::Constant(thick);
         box.extend(contact::Box(Vec3(p - r), Vec3(p + r)));
       }
     }

@@ -9,6 +9,7 @@
 #include "sinew/linalg/finite.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/contact_passage.hpp"
+#include "sinew/sim/rod_rows.hpp"
 
 namespace sinew {
 
@@ -84,6 +85,7 @@ void Linearization::evaluate(const StepContext& context, const State& iterate, S
   forces_.resize(solids);
   free_.resize(solids);
   factored_.assign(solids, Factored::failed);
+  exact_.assign(solids, false);
   reduced_.problem.volumes.resize(solids);
   if (!context.model.pairs.empty()) {
     const Clock clock(times.contact);
@@ -225,6 +227,7 @@ void Linearization::factor_solid(std::size_t number, solid::Tangent kind, StageT
   };
   Factored& own = factored_[number];
   own = factored(kind) ? Factored::as_told : Factored::failed;
+  exact_[number] = own == Factored::as_told && kind == solid::Tangent::exact;
   if (own == Factored::failed && kind == solid::Tangent::exact && factored(solid::Tangent::definite))
     own = Factored::definite;
 }
@@ -356,6 +359,7 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
 }
 
 double Linearization::beyond_tangent(const Increment& increment, const ContactsBeyond& solved) {
+  const Clock clock(times_->contact);
   const StepContext& context = *context_;
   const Model& model = context.model;
   trial_ = *iterate_;
@@ -363,32 +367,36 @@ double Linearization::beyond_tangent(const Increment& increment, const ContactsB
   trial_room_.start = contacts_.start;
   trial_room_.facings = contacts_.facings;
   trial_room_.least = contacts_.least;
+  trial_room_.playing.clear();
   evaluate_contacts(context, trial_, trial_room_);
   forces_here_.clear();
+  forces_more_.clear();
   forces_there_.clear();
   for (std::size_t i = 0; i < contacts_.touches.size(); ++i) {
-    forces_here_.push_back(increment.forces.contacts[i].from + increment.forces.contacts[i].more);
+    forces_here_.push_back(increment.forces.contacts[i].from);
+    forces_more_.push_back(increment.forces.contacts[i].more);
     forces_there_.push_back(trial_room_.touches[i].force);
   }
-  contacts_beyond_tangent(model, {*iterate_, contacts_, forces_here_}, {trial_, trial_room_, forces_there_},
-                          increment.dx, increment.reduced, beyond_);
+  contacts_beyond_tangent(model, {*iterate_, contacts_, forces_here_}, forces_more_,
+                          {trial_, trial_room_, forces_there_}, exact_, increment.dx, increment.reduced, beyond_);
   const std::vector<int>& touching = contact_forces_.touching();
-  beyond_.u.setZero(contact_forces_.problem().b.size());
-  contact_forces_.motion_of(context, free_, increment.reduced, true, beyond_.u);
-  beyond_.u = -beyond_.u;
-  beyond_.u.tail(beyond_.u.size() - 3 * static_cast<Eigen::Index>(touching.size())).setZero();  // rods in channels
-  for (std::size_t i = 0; i < touching.size(); ++i) {
-    const auto at = static_cast<std::size_t>(touching[i]);
-    beyond_.u.segment<3>(3 * static_cast<Eigen::Index>(i)) += trial_room_.touches[at].u - contacts_.touches[at].u;
+  const Eigen::VectorXd& moved = contact_forces_.moved();
+  beyond_.u.setZero(moved.size());  // and stays so of rods that rub, and of what nothing answers
+  for (int i = 0; i < static_cast<int>(touching.size()); ++i) {
+    if (!contact_forces_.answered(i)) continue;
+    const auto at = static_cast<std::size_t>(touching[static_cast<std::size_t>(i)]);
+    beyond_.u.segment<3>(3 * i) =
+        contact_beyond_rows(contacts_.touches[at], trial_room_.touches[at], moved.segment<3>(3 * i));
   }
   double force = 0.0;
   for (std::size_t i = 0; i < beyond_.nodes.size(); ++i) {
-    if (beyond_.nodes[i].cols() > 0)
-      force = std::max(force, (beyond_.nodes[i] - solved.nodes[i]).cwiseAbs().maxCoeff());
+    solid::at_unknowns(model.solids[i].body, beyond_.nodes[i] - solved.nodes[i], pushes_[i]);
+    if (pushes_[i].size() > 0) force = std::max(force, pushes_[i].cwiseAbs().maxCoeff());
   }
   for (std::size_t i = 0; i < beyond_.rods.size(); ++i) {
-    if (beyond_.rods[i].size() > 0)
-      force = std::max(force, (beyond_.rods[i] - solved.rods[i]).cwiseAbs().maxCoeff() / model.size);
+    if (beyond_.rods[i].isZero(0.0) && solved.rods[i].isZero(0.0)) continue;
+    const Eigen::VectorXd off = beyond_.rods[i] - solved.rods[i];
+    force = std::max(force, (off.array() / strain_levers(model.rods[i].rod).array()).abs().maxCoeff());
   }
   if (model.unknowns > 0)
     force = std::max(force, ((beyond_.z - solved.z).array() / model.arms.array()).abs().maxCoeff());
@@ -404,13 +412,8 @@ void Linearization::correct_contacts(double enough, Increment& increment) {
   if (!increment.reduced.ok ||
       std::none_of(increment.forces.contacts.begin(), increment.forces.contacts.end(), presses))
     return;
-  const Clock clock(times_->contact);
-  solved_.z.setZero(model.unknowns);
-  solved_.u.setZero(contact_forces_.problem().b.size());
-  solved_.nodes.resize(free_.size());
-  for (std::size_t i = 0; i < free_.size(); ++i) solved_.nodes[i].setZero(3, model.solids[i].body.rest.cols());
-  solved_.rods.resize(model.rods.size());
-  for (std::size_t i = 0; i < model.rods.size(); ++i) solved_.rods[i].setZero(model.rods[i].rod.strain_coordinates());
+  clear(model, solved_);
+  solved_.u.setZero(contact_forces_.moved().size());
   double left = beyond_tangent(increment, solved_);
   for (int turn = 0; turn < kMostTurns && left > enough; ++turn) {
     before_ = increment;
@@ -422,8 +425,11 @@ void Linearization::correct_contacts(double enough, Increment& increment) {
       solid::at_unknowns(model.solids[i].body, solved_.nodes[i], pushes_[i]);
       pushes_[i] = -forces_[i].r - pushes_[i];
     }
-    push(pushes_, side_);
-    follow(pushes_, side_, increment, {}, {}, &solved_.u);
+    {
+      const Clock clock(times_->solve);
+      push(pushes_, side_);
+      follow(pushes_, side_, increment, {}, {}, &solved_.u);
+    }
     const double last = std::exchange(left, increment.reduced.ok ? beyond_tangent(increment, solved_) : NAN);
     if (left <= kContracts * last) continue;
     increment = before_;

@@ -91,11 +91,11 @@ class Linearization {
   }
   void solve(const Linearization& right, Increment& increment, const Steer& steer = {},
              std::optional<solve::CoupledFactor::Part> rough = {});
+  /// The same for forces [N] on each volume's unknowns and another right side of the rest.
+  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// Corrects an increment that was solved for here, with what contacts do beyond the tangent (sim/contact_correction),
   /// as long as that contracts and more than `enough` of forces and rows would be left of it.
   void correct_contacts(double enough, Increment& increment);
-  /// The same for forces [N] on each volume's unknowns and another right side of the rest.
-  void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
   void couple(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.solve(side, solution); }
   /// The same with forces [N] on each volume's unknowns, which then stand in place of those that `solve` has pushed.
@@ -169,6 +169,7 @@ class Linearization {
   std::vector<int> unresisted_;
   enum class Factored { failed, as_told, definite };
   std::vector<Factored> factored_;  ///< each volume
+  std::vector<char> exact_;         ///< of each, whether A is the exact tangent
   std::vector<FreeMotion> free_;
   std::vector<StageTimes> spent_;  ///< by each task
   solve::CoupledFactor factor_;
@@ -180,7 +181,7 @@ class Linearization {
   solve::RightSide side_;
   State trial_;  ///< where an increment leads, and contacts there
   ContactRoom trial_room_;
-  std::vector<Vec3> forces_here_, forces_there_;
+  std::vector<Vec3> forces_here_, forces_more_, forces_there_;
   ContactsBeyond beyond_, solved_;
   Increment before_;
   std::vector<Eigen::VectorXd> left_;  ///< by a refinement, of which these are the rest and a part

@@ -156,7 +156,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     return report;
   };
   const auto nothing_holds = [&] {
-    const bool by_contact = context.rate == 0.0 && !context.model.pairs.empty();
+    const bool by_contact = context.rate == 0.0 && !here.contacts().playing.empty();
     return fail(Status::singular, std::string("constraint rows and rods") +
                                       (by_contact ? "; what nothing but contact holds at rest is found with `analysis: "
                                                     "dynamic` and damping"
@@ -256,8 +256,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       write_forces(here, iterate.state);
       return complete();
     }
-    // With contacts, whose curvature the tangent lacks, an iteration that contracts steadily is let go on beyond its
-    // limit: to begin again with half the step costs more.
+    // With contacts, whose parts come and go, an iteration that contracts steadily is let go on beyond its limit: to
+    // begin again with half the step costs more.
     const double size = context.model.size,
                  off = std::max({report.residual, report.violation / size, contact_error / size});
     const bool contracts = off < kContracts * left_off || again;
@@ -306,6 +306,10 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.redundant |= increment.reduced.redundant;
     if (here.stalled()) return fail(Status::singular, std::string("solids") + single);
     if (!increment.reduced.ok) return nothing_holds();
+    if (!rules.fixed && !rules.inverse && !rules.across && !context.model.pairs.empty() &&
+        trusted_fraction(context, increment) == 1.0)
+      here.correct_contacts(std::max(0.5 * context.model.scene.newton.tolerance, std::min(kCorrected, off * off)),
+                            increment);
     // (Of both before anything is made smallest: a difference of multipliers that nothing answers means nothing.)
     if (rules.across) change_along(at, memory, iterate, report.times);
     for (const RedundantRows& own : here.reduced().redundant)
@@ -325,11 +329,6 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     double fraction = 1.0;
     if (!rules.fixed) {
       fraction = trusted_fraction(context, increment);
-      if (fraction == 1.0 && !rules.inverse && !context.model.pairs.empty()) {
-        here.correct_contacts(std::max(0.5 * context.model.scene.newton.tolerance, std::min(kCorrected, off * off)),
-                              increment);
-        fraction = trusted_fraction(context, increment);
-      }
     } else if (std::string lost = beyond_trust(context, increment); !lost.empty()) {
       return fail(Status::diverged, std::move(lost));
     }

@@ -20,7 +20,7 @@ constexpr double kMatters = 1e-7;  ///< of the scene's size: less in a step is n
 constexpr double kRolls = 1e-3;    ///< of how far the surfaces turn: what comes with them does not roll
 constexpr double kSticks = 0.999;  ///< of the friction there is
 constexpr double kStands = 1e-3;   ///< sine of the tilt below which the lowest point of a rim is chance
-constexpr double kDamped = 0.1;    ///< of the moment that turns a rod
+constexpr double kDamped = 0.1;    ///< of the moments about a rod's axis
 constexpr double kSpins = 0.01;    ///< [rad] in a step: a tenth of the energy of spin in a revolution
 
 /// How far a surface moves past a contact beyond its core, by how much the chord is off, and how far it would move past
@@ -65,7 +65,7 @@ Rolled rolled(const ContactSide& side, const Simplex& placed, const std::array<d
 
 /// About a rod's axis, what turns it where it is touched, and how far it spins there in the step.
 struct Spin {
-  double moment = 0.0;  ///< [N m]
+  double moment = 0.0;  ///< [N m] sum of their sizes
   double turn = 0.0;    ///< [rad]
 };
 
@@ -76,14 +76,14 @@ std::vector<Warning> assess_spin(const StepContext& context, const State& next, 
     const Touch& touch = room.touches[i];
     if (touch.force.isZero(0.0)) continue;
     each_side(next.contacts[i], touch,
-              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& point, double sign) {
+              [&](const ContactSide& side, const std::array<double, 3>& weights, const Vec3& point, double) {
                 if (side.on.kind != Kind::rod) return;
                 const double s = abscissa_of(side, weights);
                 const rod::Branch from = rod::branch(room.start[side.on.number], s),
                                   to = rod::branch(room.now[side.on.number], s);
                 const Vec3 axis = to.R.col(0);
                 Spin& own = spins[static_cast<std::size_t>(side.on.number)];
-                own.moment += sign * axis.dot((point - to.p).cross(touch.force));
+                own.moment += std::abs(axis.dot((point - to.p).cross(touch.force)));
                 const double turn = axis.dot(lie::log(to.R * from.R.transpose()));
                 if (std::abs(turn) > std::abs(own.turn)) own.turn = turn;
               });
@@ -95,16 +95,18 @@ std::vector<Warning> assess_spin(const StepContext& context, const State& next, 
     for (const rod::MassPoint& point : model.rods[n].rod.masses) inertia += point.mass * point.offset.squaredNorm();
     const double turn = std::abs(spins[n].turn), moment = std::abs(spins[n].moment),
                  drag = 2.0 * inertia * std::sin(turn) * (1.0 - std::cos(turn)) * context.rate * context.rate;
-    if (turn <= kSpins || !(drag > worst * moment)) continue;
-    worst = drag / moment;
-    step = context.h * std::max(kDamped / worst, kSpins / turn);
+    const double share = drag / (drag + moment);
+    if (turn <= kSpins || !(share > worst)) continue;
+    worst = share;
+    // (Where the contacts' moment is not much besides, it is there for the drag, and shrinks with it.)
+    step = context.h * (share > 0.5 ? kSpins / turn : std::max(kDamped / share, kSpins / turn));
     damped = static_cast<int>(n);
   }
   if (damped < 0) return {};
   return {{.code = "spin_damped",
            .where = "rods." + model.rods[static_cast<std::size_t>(damped)].name,
-           .message = "the time step brakes its spin by " + three_digits(100.0 * worst) +
-                      " % of the moment with which contacts turn it",
+           .message = "the time step brakes its spin with " + three_digits(100.0 * worst) +
+                      " % of the moments about its axis, its own and those of contacts",
            .remedy = "take steps of " + three_digits(1e3 * step) + " ms or less, or make a `body` of what is stiff",
            .time = next.time,
            .value = worst,
