@@ -66,7 +66,7 @@ Rolled rolled(const ContactSide& side, const Simplex& placed, const std::array<d
 /// About a rod's axis, what turns it where it is touched, and how far it spins there in the step.
 struct Spin {
   double moment = 0.0;  ///< [N m] sum of their sizes
-  double turn = 0.0;    ///< [rad]
+  double turn = 0.0;    ///< [rad] >= 0
 };
 
 std::vector<Warning> assess_spin(const StepContext& context, const State& next, const ContactRoom& room) {
@@ -84,19 +84,19 @@ std::vector<Warning> assess_spin(const StepContext& context, const State& next, 
                 const Vec3 axis = to.R.col(0);
                 Spin& own = spins[static_cast<std::size_t>(side.on.number)];
                 own.moment += std::abs(axis.dot((point - to.p).cross(touch.force)));
-                const double turn = axis.dot(lie::log(to.R * from.R.transpose()));
-                if (std::abs(turn) > std::abs(own.turn)) own.turn = turn;
+                own.turn = std::max(own.turn, std::abs(axis.dot(lie::log(to.R * from.R.transpose()))));
               });
   }
   double worst = kDamped, step = 0.0;
   int damped = -1;
   for (std::size_t n = 0; n < spins.size(); ++n) {
+    const auto [moment, turn] = spins[n];
+    if (turn <= kSpins) continue;
     double inertia = 0.0;  // polar, of the whole rod
     for (const rod::MassPoint& point : model.rods[n].rod.masses) inertia += point.mass * point.offset.squaredNorm();
-    const double turn = std::abs(spins[n].turn), moment = std::abs(spins[n].moment),
-                 drag = 2.0 * inertia * std::sin(turn) * (1.0 - std::cos(turn)) * context.rate * context.rate;
+    const double drag = 2.0 * inertia * std::sin(turn) * (1.0 - std::cos(turn)) * context.rate * context.rate;
     const double share = drag / (drag + moment);
-    if (turn <= kSpins || !(share > worst)) continue;
+    if (!(share > worst)) continue;
     worst = share;
     // (Where the contacts' moment is not much besides, it is there for the drag, and shrinks with it.)
     step = context.h * (share > 0.5 ? kSpins / turn : std::max(kDamped / share, kSpins / turn));
