@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "support/recorded_run.hpp"
@@ -61,6 +62,52 @@ TEST(Snap, the_energy_set_free_is_what_damped_motion_dissipates) {
   ASSERT_TRUE(run.done()) << run.why();
   EXPECT_NEAR(rest.last("energy.dissipated"), run.last("energy.dissipated"), 0.03 * run.last("energy.dissipated"));
   EXPECT_NEAR(rest.last("mid.z"), run.last("mid.z"), 1e-5);
+}
+
+const std::vector<std::string> no_floor = {"obstacles={}", "outputs={mid: {rod: arch, at: 0.1}}"};
+
+std::vector<std::string> and_no_floor(std::vector<std::string> changes) {
+  changes.insert(changes.end(), no_floor.begin(), no_floor.end());
+  return changes;
+}
+
+TEST(Snap, an_arch_that_nothing_can_touch_goes_over_as_well) {
+  const RecordedRun alone = arch("arch_snaps", no_floor), beside = arch("arch_snaps");
+  ASSERT_TRUE(alone.done()) << alone.why();
+  const Warning *told = alone.warning("snapped"), *other = beside.warning("snapped");
+  ASSERT_TRUE(told && other);
+  EXPECT_EQ(told->where, "rods.arch");
+  EXPECT_NEAR(told->time, other->time, 0.5 * alone.loaded.model.scene.time.step);
+  EXPECT_NEAR(alone.last("mid.z"), beside.last("mid.z"), 1e-8);
+  EXPECT_NEAR(alone.last("energy.dissipated"), beside.last("energy.dissipated"),
+              0.02 * beside.last("energy.dissipated"));
+  const RecordedRun stopped = arch("arch_snaps", and_no_floor({"snap=stop"}));
+  EXPECT_EQ(stopped.failure().status, Status::path_lost);
+  EXPECT_EQ(stopped.failure().detail.find("rods.arch: no equilibrium goes on"), 0U) << stopped.failure().detail;
+}
+
+// Gravity is brought on at the first point of a run, as loads are: it sets free what the same load does.
+TEST(Snap, weight_at_the_start_sets_free_what_a_load_does) {
+  const double area = M_PI * 2e-3 * 2e-3, weight = 1000.0 * 9.81 * area;  // [N/m]
+  const std::vector<std::string> once = {"time.duration=20 ms"};
+  for (const bool floor : {true, false}) {
+    SCOPED_TRACE(floor);
+    const auto with = [&](const std::vector<std::string>& changes) {
+      std::vector<std::string> all = floor ? once : and_no_floor(once);
+      all.insert(all.end(), changes.begin(), changes.end());
+      return arch("arch_snaps", all);
+    };
+    const RecordedRun weighs = with({"gravity=[0, 0, -29.43]", "loads={}"}),
+                      loaded = with({"loads={push: {rod: arch, from: 0, to: 0.2, force: [0, 0, " +
+                                     std::to_string(-3.0 * weight) + "]}}"});
+    ASSERT_TRUE(weighs.done()) << weighs.why();
+    ASSERT_TRUE(loaded.done()) << loaded.why();
+    EXPECT_LT(weighs.last("mid.z"), 0.0);
+    EXPECT_NEAR(weighs.last("mid.z"), loaded.last("mid.z"), 1e-4);
+    const Warning *told = weighs.warning("snapped"), *other = loaded.warning("snapped");
+    ASSERT_TRUE(told && other);
+    EXPECT_NEAR(told->value, other->value, 0.05 * other->value);
+  }
 }
 
 TEST(Snap, a_run_ends_there_if_it_is_told_to_stop) {

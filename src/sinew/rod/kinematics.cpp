@@ -58,28 +58,34 @@ void reconfigure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Con
   configure(rod, base, q, shape);
 }
 
+Placement first_frame(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Matrix6X* twists) {
+  Placement first{base.rest.R * base.turned, base.rest.p};
+  if (twists) twists->setZero(6, rod.base_coordinates());
+  for (int i = 0; i < rod.base_coordinates(); ++i) {
+    if (rod.base[i].turns) continue;
+    const Vec3 axis = rod.base[i].sign * base.rest.R.col(rod.base[i].axis);
+    first.p += q[i] * axis;
+    if (twists) twists->col(i).tail<3>() = axis;
+  }
+  for (int i = 0; i < rod.base_coordinates(); ++i) {  // one after another, each about an axis the earlier ones turned
+    if (!rod.base[i].turns) continue;
+    const Vec3 axis = rod.base[i].sign * Vec3::Unit(rod.base[i].axis);
+    if (twists) {
+      twists->col(i).head<3>() = first.R * axis;
+      twists->col(i).tail<3>() = (first.p - base.rest.p).cross(Vec3(first.R * axis));
+    }
+    first.R = first.R * lie::exp(q[i] * axis);
+  }
+  return first;
+}
+
 void configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Configuration& shape) {
   shape.rod = nullptr;  // until all is there: memory may run out
   shape.from = base;
   shape.q = q;
   shape.origin = base.rest.p;
   const int N = rod.count();
-  Mat3 R = base.rest.R * base.turned;
-  Vec3 p = base.rest.p;
-  shape.base.setZero(6, rod.base_coordinates());
-  for (int i = 0; i < rod.base_coordinates(); ++i) {
-    if (rod.base[i].turns) continue;
-    const Vec3 axis = rod.base[i].sign * base.rest.R.col(rod.base[i].axis);
-    p += q[i] * axis;
-    shape.base.col(i).tail<3>() = axis;
-  }
-  for (int i = 0; i < rod.base_coordinates(); ++i) {  // one after another, each about an axis the earlier ones turned
-    if (!rod.base[i].turns) continue;
-    const Vec3 axis = rod.base[i].sign * Vec3::Unit(rod.base[i].axis);
-    shape.base.col(i).head<3>() = R * axis;
-    shape.base.col(i).tail<3>() = (p - shape.origin).cross(Vec3(R * axis));
-    R = R * lie::exp(q[i] * axis);
-  }
+  auto [R, p] = first_frame(rod, base, q, &shape.base);
 
   shape.R.clear();
   shape.p.clear();
@@ -225,6 +231,11 @@ CentrePoint centre_point(const Configuration& shape, double s) {
 }
 
 Vec3 position(const Configuration& shape, double s, const Vec3& offset) {
+  const int i = shape.rod->section_at(s);
+  if (shape.strains[i].cols() == 1) {
+    const Piece piece = piece_to(shape, i, s);
+    return piece.end() + piece.R * (piece.exponential() * offset);
+  }
   const Branch own = branch(shape, s);
   return own.p + own.R * offset;
 }

@@ -80,6 +80,9 @@ struct Configuration {
   Matrix6X twists;  ///< of the strain coordinates, as felt beyond their section
 };
 
+/// The frame of the first cross-section; and the twists of the base's coordinates, where they are asked for.
+Placement first_frame(const Rod& rod, const Base& base, const Eigen::VectorXd& q, Matrix6X* twists = nullptr);
+
 /// (3), (4) from the base's placement and q.
 Configuration configure(const Rod& rod, const Base& base, const Eigen::VectorXd& q);
 /// The same in the memory of an earlier one.

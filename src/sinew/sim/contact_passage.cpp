@@ -135,8 +135,8 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   return deepest;
 }
 
-/// The furthest that anything of an object moves.
-double farthest(const StepMotion& motion, const Collider& own) {
+/// The furthest that anything of an object moves; `surfaces` are those of the start.
+double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collider& own) {
   const Model& model = motion.start.model;
   double most = 0.0;
   switch (own.kind) {
@@ -144,13 +144,12 @@ double farthest(const StepMotion& motion, const Collider& own) {
       most =
           (motion.end.state.solids[own.number].x - motion.start.state.solids[own.number].x).colwise().norm().maxCoeff();
       break;
-    case Kind::rod:
-      for (const double s : model.rods[own.number].touching) {
-        most = std::max(
-            most,
-            (rod::position(motion.end.rods[own.number], s) - rod::position(motion.start.rods[own.number], s)).norm());
-      }
+    case Kind::rod: {
+      Eigen::Matrix3Xd ends;
+      touching_points(motion.end, own.number, ends);
+      most = (ends - surfaces.points_of_rod(own.number)).colwise().norm().maxCoeff();
       break;
+    }
     case Kind::body:
     case Kind::obstacle: {
       const contact::Pose from = motion.start.pose(own), to = motion.end.pose(own);
@@ -228,7 +227,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   std::map<std::pair<Kind, int>, double> moved;
   const auto motion_of = [&](const Collider& own) {
     const auto [place, fresh] = moved.try_emplace({own.kind, own.number}, 0.0);
-    if (fresh) place->second = farthest(motion, own);
+    if (fresh) place->second = farthest(motion, room.surfaces, own);
     return place->second;
   };
   std::vector<ContactState> candidates;

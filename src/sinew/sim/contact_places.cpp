@@ -26,6 +26,13 @@ contact::Simplex Moment::placed(const ContactSide& side) const {
   return own;
 }
 
+void touching_points(const Moment& now, int rod, Eigen::Matrix3Xd& points) {
+  const std::vector<double>& abscissae = now.model.rods[rod].touching;
+  points.resize(3, static_cast<Eigen::Index>(abscissae.size()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    points.col(i) = rod::position(now.rods[rod], abscissae[static_cast<std::size_t>(i)]);
+}
+
 bool is_rigid(const Collider& own) { return own.kind == Kind::body || own.kind == Kind::obstacle; }
 
 bool in_a_pair(const Model& model, const Collider& own) {
@@ -108,7 +115,7 @@ void configure_touching(const Model& model, const std::vector<Placement>& bases,
   rods.resize(model.rods.size());
   for (std::size_t i = 0; i < rods.size(); ++i) {
     if (in_a_pair(model, {Kind::rod, static_cast<int>(i)}))
-      rod::configure(model.rods[i].rod, {bases[i], state.rods[i].turned}, state.rods[i].q, rods[i]);
+      rod::reconfigure(model.rods[i].rod, {bases[i], state.rods[i].turned}, state.rods[i].q, rods[i]);
   }
 }
 

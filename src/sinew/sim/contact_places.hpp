@@ -21,6 +21,9 @@ struct Moment {
   contact::Simplex placed(const ContactSide& side) const;
 };
 
+/// Where a rod is at the abscissae by which it touches, 3 x n [m].
+void touching_points(const Moment& now, int rod, Eigen::Matrix3Xd& points);
+
 /// [m] of the point of a rod's part that these weights of its ends tell.
 inline double abscissa_of(const ContactSide& side, const std::array<double, 3>& weights) {
   return side.local.corners() == 1 ? side.abscissae[0]

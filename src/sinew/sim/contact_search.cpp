@@ -62,8 +62,8 @@ class Search {
     }
     const auto look = [&](const Collider& poking, const Collider& faced) {
       if (faced.kind == Kind::rod) return;
-      each_prong(poking, Simplex::Kind::point, around(faced), [&](const ContactSide& side, int) {
-        deepest = std::max(deepest, depth_in(faced, start_.placed(side)));
+      each_prong(poking, Simplex::Kind::point, around(faced), [&](const ContactSide& side, int prong) {
+        deepest = std::max(deepest, depth_in(faced, placed(side, prong)));
       });
     };
     look(own.a, own.b);
@@ -268,10 +268,9 @@ class Search {
       const RodModel& rod = start_.model.rods[own.number];
       double thick = 0.0;  // (pieces are as thick as the thicker of their ends)
       for (const double s : rod.touching) thick = std::max(thick, rod::radius_at(rod.rod.profile, s));
-      for (const double s : rod.touching) {
-        const Vec3 p = rod::position(start_.rods[own.number], s), r = Vec3::Constant(thick);
-        box.extend(contact::Box(Vec3(p - r), Vec3(p + r)));
-      }
+      const Eigen::Matrix3Xd& points = surfaces_.points_of_rod(own.number);
+      box = contact::Box(Vec3(points.rowwise().minCoeff().array() - thick),
+                         Vec3(points.rowwise().maxCoeff().array() + thick));
     }
     return around_.emplace_back(own, grown(box)).second;
   }
@@ -287,10 +286,19 @@ class Search {
   bool matters(double gap) const { return matters(gap, depth_); }
   bool matters(double gap, double depth) const { return gap < alarm_ && gap > -depth; }
 
+  /// Of a prong, by its number: rods are placed once a step.
+  Simplex placed(const ContactSide& side, int number) const {
+    if (side.on.kind != Kind::rod) return start_.placed(side);
+    Simplex own = side.local;
+    const Eigen::Matrix3Xd& points = surfaces_.points_of_rod(side.on.number);
+    for (int k = 0; k < own.corners(); ++k) own.x[static_cast<std::size_t>(k)] = points.col(number + k);
+    return own;
+  }
+
   void points_and_faces(const Collider& poking, const Collider& faced, Part part) {
     if (faced.kind == Kind::rod) return;  // thin: its pieces are met
     each_prong(poking, Simplex::Kind::point, around(faced), [&](const ContactSide& a, int number) {
-      const Simplex point = start_.placed(a);
+      const Simplex point = placed(a, number);
       if (const Surface* surface = surfaces_.of(faced)) {
         add_faces(a, point, faced, *surface, number, part);
       } else {
@@ -307,7 +315,7 @@ class Search {
     const std::vector<Edge> pieces = edges_of(rod, around(poking));
     if (pieces.empty()) return;
     each_prong(poking, Simplex::Kind::point, around(rod), [&](const ContactSide& a, int number) {
-      const Simplex point = start_.placed(a);
+      const Simplex point = placed(a, number);
       const contact::Box where = grown(contact::Box(point.x[0]), point.radius);
       for (const Edge& piece : pieces) {
         if (!where.intersects(piece.box)) continue;
@@ -428,7 +436,7 @@ class Search {
   std::vector<Edge> edges_of(const Collider& own, const contact::Box& where) const {
     std::vector<Edge> all;
     each_prong(own, Simplex::Kind::segment, where, [&](const ContactSide& side, int number) {
-      Edge edge{side, start_.placed(side), {}, number};
+      Edge edge{side, placed(side, number), {}, number};
       edge.box.extend(edge.placed.x[0]);
       edge.box.extend(edge.placed.x[1]);
       edge.box.min().array() -= edge.placed.radius;

@@ -30,6 +30,11 @@ void fit_boxes(Surface& own) {
 }  // namespace
 
 void Surfaces::fit(const Collider& own, const Moment& now) {
+  if (own.kind == Kind::rod) {
+    rods_.resize(now.model.rods.size());
+    touching_points(now, own.number, rods_[static_cast<std::size_t>(own.number)]);
+    return;
+  }
   std::vector<Surface>& all = of_kind_[static_cast<std::size_t>(own.kind)];
   if (static_cast<int>(all.size()) <= own.number) all.resize(static_cast<std::size_t>(own.number) + 1);
   Surface& surface = all[static_cast<std::size_t>(own.number)];
@@ -57,7 +62,7 @@ void Surfaces::fit(const Moment& now) {
   std::vector<Collider> fitted;
   for (const PairModel& pair : now.model.pairs) {
     for (const Collider& own : {pair.a, pair.b}) {
-      if (own.kind == Kind::rod || std::find(fitted.begin(), fitted.end(), own) != fitted.end()) continue;
+      if (std::find(fitted.begin(), fitted.end(), own) != fitted.end()) continue;
       fitted.push_back(own);
       fit(own, now);
     }

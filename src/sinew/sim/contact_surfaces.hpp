@@ -1,4 +1,4 @@
-// Surfaces of triangles that may touch something, where they are at the start of a step.
+// What may touch something, where it is at the start of a step: surfaces of triangles, and points of rods.
 #pragma once
 
 #include <array>
@@ -20,17 +20,20 @@ struct Surface {
   std::vector<contact::Box> boxes;
 };
 
-/// Of all obstacles, bodies and solids.
+/// Of all obstacles, bodies, solids and rods.
 class Surfaces {
  public:
   /// Fits those that are in a pair to where they are.
   void fit(const Moment& now);
   /// Null of what has none.
   const Surface* of(const Collider& own) const;
+  /// Where a rod is at the abscissae by which it touches, 3 x n [m].
+  const Eigen::Matrix3Xd& points_of_rod(int number) const { return rods_[static_cast<std::size_t>(number)]; }
 
  private:
   void fit(const Collider& own, const Moment& now);
   std::array<std::vector<Surface>, 3> of_kind_;
+  std::vector<Eigen::Matrix3Xd> rods_;
 };
 
 /// Between the normals of the two triangles beside a ridge; none where they lie in one plane, but for 10 degrees, or in

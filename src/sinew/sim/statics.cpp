@@ -36,6 +36,7 @@ struct Ramp {
   double time_from = 0.0, time_to = 0.0;
 
   double time(double t) const { return time_from + t * (time_to - time_from); }
+  Vec3 gravity(double t) const { return gravity_from + t * (gravity_to - gravity_from); }
 };
 
 Command nothing(const Model& model) {
@@ -46,7 +47,7 @@ Command nothing(const Model& model) {
 ContextAt along(const Ramp& ramp, const State& start) {
   return [&ramp, &start](double t, StepContext& context) {
     context.set(start, between(ramp.from, ramp.to, t), ramp.time(t) - start.time);
-    context.gravity = ramp.gravity_from + t * (ramp.gravity_to - ramp.gravity_from);
+    context.gravity = ramp.gravity(t);
   };
 }
 
@@ -130,7 +131,7 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
       context.set(state, between(ramp.from, ramp.to, t), arrived ? 0.0 : ramp.time(t) - state.time);
       if (arrived) context.h = tau;
       context.rate = rate;
-      context.gravity = ramp.gravity_from + t * (ramp.gravity_to - ramp.gravity_from);
+      context.gravity = ramp.gravity(t);
     };
     at(t, memory.context);
     NewtonRules rules{limit, false, Linearization::Wanted::descent};
@@ -176,44 +177,61 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
   return reached;
 }
 
-/// [J] What is set free from one equilibrium to the next of a step, beyond what friction may take where it ends, and
-/// the elastic energy.
+/// A part of a quasi-static step, from one equilibrium to another.
+struct Part {
+  const Model& model;
+  const Ramp& ramp;
+  const State& from;
+  double begin = 0.0;  ///< t of `from`
+  const State& to;
+  double end = 0.0;
+  bool let_go = false;  ///< with the loads of its end, not with ones that grew
+};
+
+/// [J] What is set free from one equilibrium to the next, beyond what friction may take where it ends, and the elastic
+/// energy. Weights that are brought on do the work of their mean, as loads do, or of all of them where the body is let
+/// go.
 struct SetFree {
   double free = 0.0, elastic = 0.0;
 };
-SetFree set_free(const Model& model, const State& from, const State& to) {
-  const EnergyBalance before = energy_balance(model, from), after = energy_balance(model, to);
+SetFree set_free(const Part& part) {
+  const Model& model = part.model;
+  const EnergyBalance before = energy_balance(model, part.from), after = energy_balance(model, part.to);
   double rubbed = 0.0;
-  for (const ContactState& own : to.contacts)
+  for (const ContactState& own : part.to.contacts)
     rubbed += (own.force - own.force.dot(own.normal) * own.normal).norm() * own.slip;
   for (const int point : model.rubbing)
-    rubbed += std::abs(to.points[point].friction * (to.points[point].s - from.points[point].s));
-  return {to.energies.work - from.energies.work - (after.total() - before.total()) - rubbed,
-          std::max(before.elastic, after.elastic)};
+    rubbed += std::abs(part.to.points[point].friction * (part.to.points[point].s - part.from.points[point].s));
+  const double whole = model.scene.gravity.norm();
+  const double when = part.let_go ? part.end : 0.5 * (part.begin + part.end);
+  const double mean = whole > 0.0 ? part.ramp.gravity(when).norm() / whole : 0.0;
+  const double held =
+      after.elastic + after.kinetic + mean * after.weight - (before.elastic + before.kinetic + mean * before.weight);
+  return {part.to.energies.work - part.from.energies.work - held - rubbed, std::max(before.elastic, after.elastic)};
 }
 constexpr double kFree = 1e-3;  ///< of the elastic energy: what steps of a load leave undecided
 
 /// Whether a step between equilibria with contacts has gone over to others than those that go on from where it began:
 /// down, or up, where nothing brings it.
-bool jumped(const Model& model, const State& from, const State& to) {
+bool jumped(const Part& part) {
   constexpr double kNear = 0.01;    // of the scene's size
   constexpr double kBeyond = 0.03;  // of the elastic energy: the work of a long, curved way is not known better
-  if (moved_most(model, from, to).far <= kNear * model.size) return false;
-  const SetFree own = set_free(model, from, to);
+  if (moved_most(part.model, part.from, part.to).far <= kNear * part.model.size) return false;
+  const SetFree own = set_free(part);
   return std::abs(own.free) > kBeyond * own.elastic;
 }
 
 /// Warning `snapped` where energy was set free on the way between two equilibria.
-std::optional<Warning> snapped(const Model& model, const State& from, const State& to) {
-  const auto [free, size] = set_free(model, from, to);
-  if (!(free > kFree * size) || !(free > 1e-14 * model.bearing * model.size)) return {};  // (rounding is none)
-  const Moved most = moved_most(model, from, to);
+std::optional<Warning> snapped(const Part& part) {
+  const auto [free, size] = set_free(part);
+  if (!(free > kFree * size) || !(free > 1e-14 * part.model.bearing * part.model.size)) return {};  // (rounding)
+  const Moved most = moved_most(part.model, part.from, part.to);
   return Warning{.code = "snapped",
                  .where = most.name,
                  .message = "no equilibrium goes on from the one before: it lets go, moves by " +
                             three_digits(1e3 * most.far) + " mm and sets " + three_digits(free) + " J free",
                  .remedy = "see how it moves with `analysis: dynamic`",
-                 .time = to.time,
+                 .time = part.to.time,
                  .value = free / size,
                  .limit = kFree,
                  .steps = 1};
@@ -365,7 +383,23 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
   std::vector<Warning> snaps;
-  if (!sound(end) || (touches && jumped(model, state, end.at.state))) {
+  // Lets go what finds no equilibrium near and looks where it comes to rest at t; false where the run is to end.
+  const auto let_go = [&](const Iterate& from, double t, Reached& next) {
+    next = settle(memory, ramp, from.state, t, iteration_limit - spent.newton);
+    add_effort(next.report, spent);
+    if (!sound(next)) return true;
+    std::optional<Warning> snap = snapped({model, ramp, from.state, from.t, next.at.state, t, true});
+    if (!snap) return true;
+    if (model.scene.snap == Snap::stop) {
+      end.report.status = Status::path_lost;
+      end.report.detail = snap->where + ": " + snap->message + "; `snap: stop`";
+      return false;
+    }
+    snaps.push_back(std::move(*snap));
+    return true;
+  };
+  bool goes_on = true;
+  if (!sound(end) || (touches && jumped({model, ramp, state, 0.0, end.at.state, 1.0}))) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
       Reached next = path_step(model, memory, ramp, on);
@@ -375,32 +409,22 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
     }
-    for (double part = 0.5; touches && on.t != 1.0 && part >= kSmallestPart && spent.newton < iteration_limit;) {
+    for (double part = touches ? 0.5 : kSmallestPart;
+         on.t != 1.0 && part >= kSmallestPart && spent.newton < iteration_limit;) {
       Reached next = go(on.state, std::min(on.t + part, 1.0), rules);
       add_effort(next.report, spent);
-      if (!sound(next) || jumped(model, on.state, next.at.state)) {
+      if (!sound(next) || jumped({model, ramp, on.state, on.t, next.at.state, next.at.t})) {
         part *= 0.5;
         if (part >= kSmallestPart) continue;
         part = kSettledPart;
-        next = settle(memory, ramp, on.state, std::min(on.t + part, 1.0), iteration_limit - spent.newton);
-        add_effort(next.report, spent);
-        if (!sound(next)) break;
-        if (std::optional<Warning> snap = snapped(model, on.state, next.at.state)) {
-          if (model.scene.snap == Snap::stop) {
-            end.report.status = Status::path_lost;
-            end.report.detail = snap->where + ": " + snap->message + "; `snap: stop`";
-            end.report.newton = spent.newton;
-            end.report.times = spent.times;
-            return {state, end.report};
-          }
-          snaps.push_back(std::move(*snap));
-        }
+        goes_on = let_go(on, std::min(on.t + part, 1.0), next);
+        if (!goes_on || !sound(next)) break;
       }
       on = next.at;
       part *= 2.0;
       if (on.t == 1.0) end = std::move(next);
     }
-    if (on.t != 1.0) {
+    if (goes_on && on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
       Reached minimum = go(on.state, 1.0, rules);
       add_effort(minimum.report, spent);

@@ -81,11 +81,10 @@ struct Carry {
   }
 };
 
-/// With which a rod's base is held: the opposite of what the rod exerts on it.
-Wrench held_by_base(const rod::Configuration& shape, const RodState& state) {
+/// With which a rod's base is held, which is turned by R: the opposite of what the rod exerts on it.
+Wrench held_by_base(const rod::Mat3& R, const RodState& state) {
   Eigen::Index first = 0;
   while (first + 1 < state.internal.cols() && state.internal(0, first) < 0.0) ++first;
-  const rod::Mat3 R = rod::branch(shape, 0.0).R;
   return {R * -state.internal.block<3, 1>(4, first), R * -state.internal.block<3, 1>(1, first)};
 }
 
@@ -119,9 +118,9 @@ Work work_of_frames(const StepContext& context, const State& next, const std::ve
     const auto number = static_cast<int>(i);
     const rod::Rod& rod = model.rods[i].rod;
     const RodState &from = context.start.rods[i], &to = next.rods[i];
-    const auto before = rod::configure(rod, {rod_base(model, context.start, number), from.turned}, from.q);
-    const auto after = rod::configure(rod, base_of(context, next, number), to.q);
-    add(held_by_base(before, from), held_by_base(after, to), model.rods[i].frame, rod::position(before, 0.0));
+    const Placement before = rod::first_frame(rod, {rod_base(model, context.start, number), from.turned}, from.q),
+                    after = rod::first_frame(rod, base_of(context, next, number), to.q);
+    add(held_by_base(before.R, from), held_by_base(after.R, to), model.rods[i].frame, before.p);
   }
   for (std::size_t i = 0; i < model.cables.size(); ++i) {
     const GeometricCableModel& cable = model.cables[i];
