@@ -69,6 +69,20 @@ TEST(StoppedRuns, loop_lies_round_its_peg) {
   EXPECT_NEAR(run.last("f.x"), other.last("f.x"), 2e-3 * other.last("f.x"));
 }
 
+// A post lies along edges of a finger: they touched it where their ends did, forces went to and fro between the two,
+// and the run stopped at t = 0.65.
+TEST(StoppedRuns, post_lies_along_edges) {
+  for (const char* step : {"50 ms", "10 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("finger_on_post", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_NEAR(run.last("tip.x"), 92.5697e-3, 1e-6);
+    EXPECT_NEAR(run.last("tip.z"), -24.4469e-3, 2e-6);
+    EXPECT_NEAR(run.last("press.normal"), 0.10276, 1e-4);
+    EXPECT_LT(run.last("press.contacts"), 4);
+  }
+}
+
 // At rest, a rod that sags beside a post: "moves further in a step than contacts are looked for".
 TEST(StoppedRuns, sag_beside_post) {
   const RecordedRun run = fault("sag_beside_post");

@@ -467,7 +467,7 @@ class Search {
         if (first == second && (one.number >= other->number || neighbours(one.side, other->side))) continue;
         const bool turned = other->placed.normal.isZero() && !one.placed.normal.isZero();
         const Edge &a = turned ? *other : one, &b = turned ? one : *other;
-        if (side_by_side(a.placed, b.placed)) continue;
+        if (side_by_side(a, b)) continue;
         const contact::Nearest found = contact::nearest(a.placed, b.placed);
         if (!(found.gap < alarm_) || !within(found, a.side, b.side)) continue;
         if (found.normal.dot(b.placed.normal) < 0.0 || found.normal.dot(a.placed.normal) > 0.0) continue;
@@ -496,11 +496,17 @@ class Search {
     return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
   }
 
-  /// Whether two thin edges are as good as parallel: the plane through both is no normal then, and their ends meet the
-  /// faces beside them.
-  static bool side_by_side(const Simplex& a, const Simplex& b) {
-    const Vec3 d = a.x[1] - a.x[0], e = b.x[1] - b.x[0];
-    return a.radius + b.radius == 0.0 && d.cross(e).squaredNorm() < 1e-4 * d.squaredNorm() * e.squaredNorm();
+  /// Whether two edges are as good as parallel: the plane through thin ones is no normal then, thick ones are as near
+  /// at one place as at another. Their ends meet what they lie beside. (Pieces of two rods have no such ends.)
+  bool side_by_side(const Edge& a, const Edge& b) const {
+    if (a.side.on.kind == Kind::rod && b.side.on.kind == Kind::rod) return false;
+    const Vec3 d = a.placed.x[1] - a.placed.x[0], e = b.placed.x[1] - b.placed.x[0];
+    const double sine2 = d.cross(e).squaredNorm() / std::max(d.squaredNorm() * e.squaredNorm(), 1e-300);
+    const double thick = a.placed.radius + b.placed.radius;
+    if (thick == 0.0) return sine2 < 1e-4;
+    // By how much they may be nearer between their ends, if they cross in the middle.
+    const double nearer = std::min(d.squaredNorm(), e.squaredNorm()) * sine2 / (8.0 * thick);
+    return nearer < kSideBySide * start_.model.size;
   }
 
   static bool rod_piece(const ContactSide& side) { return side.on.kind == Kind::rod && side.local.corners() == 2; }
@@ -522,7 +528,8 @@ class Search {
     return false;
   }
 
-  static constexpr double kSame = 1e-9;  ///< part of an edge at whose ends two points are one
+  static constexpr double kSame = 1e-9;        ///< part of an edge at whose ends two points are one
+  static constexpr double kSideBySide = 1e-8;  ///< of the scene's size: how much nearer edges may be than their ends
   const Moment& start_;
   double alarm_, depth_, shallow_ = 0.0;
   const Surfaces& surfaces_;
