@@ -496,10 +496,10 @@ class Search {
     return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
   }
 
-  /// Whether two edges are as good as parallel: the plane through thin ones is no normal then, thick ones are as near
-  /// at one place as at another. Their ends meet what they lie beside. (Pieces of two rods have no such ends.)
+  /// Whether two edges are as good as parallel: the plane through thin ones is no normal then, and the axis of a
+  /// capsule is as near at one place as at another. Their ends meet what they lie beside. (Rods bend between theirs.)
   bool side_by_side(const Edge& a, const Edge& b) const {
-    if (a.side.on.kind == Kind::rod && b.side.on.kind == Kind::rod) return false;
+    if (a.side.on.kind == Kind::rod || b.side.on.kind == Kind::rod) return false;
     const Vec3 d = a.placed.x[1] - a.placed.x[0], e = b.placed.x[1] - b.placed.x[0];
     const double sine2 = d.cross(e).squaredNorm() / std::max(d.squaredNorm() * e.squaredNorm(), 1e-300);
     const double thick = a.placed.radius + b.placed.radius;
