@@ -78,8 +78,8 @@ class Scene(SceneMethods):
     gravity: The acceleration of free fall [m/s^2]; for example [0, -9.81, 0]; if left out [0.0, 0.0, 0.0].
     analysis: What is computed: the motion (dynamic), equilibria over time (quasi_static) or at the end (static), or
         natural frequencies at the start (modal); for example "static"; if left out "dynamic".
-    snap: Where a quasi_static run with contacts finds no equilibrium that goes on from the one before: follow what lets
-        go to the next one, with a warning, or stop; for example "stop"; if left out "follow".
+    snap: Where a quasi_static run finds no equilibrium that goes on from the one before: follow what lets go to the
+        next one, with a warning, or stop; for example "stop"; if left out "follow".
     modes: The number of modes of a modal analysis; for example 6; if left out 6.
     newton: How a step is solved: `converged`, a number of linearisations (1 is a linearised step), or a map; for
         example "converged".

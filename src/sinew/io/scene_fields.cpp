@@ -106,7 +106,7 @@ const Type<Scene>& scene_type() {
                                         {"static", Analysis::statics},
                                         {"modal", Analysis::modal}})),
         field<Scene>({"snap", optional,
-                      "where a quasi_static run with contacts finds no equilibrium that goes on from the one before: "
+                      "where a quasi_static run finds no equilibrium that goes on from the one before: "
                       "follow what lets go to the next one, with a warning, or stop",
                       "stop"},
                      &Scene::snap, word_of<Snap>({{"follow", Snap::follow}, {"stop", Snap::stop}})),

@@ -497,16 +497,20 @@ class Search {
   }
 
   /// Whether two edges are as good as parallel: the plane through thin ones is no normal then, and the axis of a
-  /// capsule is as near at one place as at another. Their ends meet what they lie beside. (Rods bend between theirs.)
+  /// capsule is as near at one place as at another. Ends of edges meet what they lie beside; of thick ones only points
+  /// do, so all of an edge has to lie along the axis. (Rods bend between their ends.)
   bool side_by_side(const Edge& a, const Edge& b) const {
     if (a.side.on.kind == Kind::rod || b.side.on.kind == Kind::rod) return false;
-    const Vec3 d = a.placed.x[1] - a.placed.x[0], e = b.placed.x[1] - b.placed.x[0];
+    const bool a_thick = a.placed.radius > 0.0;
+    const Simplex &axis = a_thick ? a.placed : b.placed, &edge = a_thick ? b.placed : a.placed;
+    const Vec3 d = axis.x[1] - axis.x[0], e = edge.x[1] - edge.x[0];
     const double sine2 = d.cross(e).squaredNorm() / std::max(d.squaredNorm() * e.squaredNorm(), 1e-300);
-    const double thick = a.placed.radius + b.placed.radius;
-    if (thick == 0.0) return sine2 < 1e-4;
-    // By how much they may be nearer between their ends, if they cross in the middle.
-    const double nearer = std::min(d.squaredNorm(), e.squaredNorm()) * sine2 / (8.0 * thick);
-    return nearer < kSideBySide * start_.model.size;
+    if (axis.radius == 0.0) return sine2 < 1e-4;
+    const double from = d.dot(edge.x[0] - axis.x[0]), to = d.dot(edge.x[1] - axis.x[0]);
+    const bool beside = std::min(from, to) >= 0.0 && std::max(from, to) <= d.squaredNorm();
+    // By how much it may be nearer between its ends, if they cross in the middle.
+    const double nearer = e.squaredNorm() * sine2 / (8.0 * axis.radius);
+    return beside && nearer < kSideBySide * start_.model.size;
   }
 
   static bool rod_piece(const ContactSide& side) { return side.on.kind == Kind::rod && side.local.corners() == 2; }

@@ -202,7 +202,7 @@ double alarm_distance(const StepContext& context) {
 
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm) {
   if (context.model.pairs.empty()) return;
-  std::swap(room.start, room.now);  // (as the last step ended, this one starts)
+  std::swap(room.start, room.now);  // (most steps start as the last one ended)
   configure_touching(context.model, rod_bases(context.model, context.start), context.start, room.start);
   const std::vector<Placement> frames = frames_at(context.model, context.start.time);
   const Moment start{context.model, context.start, frames, room.start};

@@ -11,6 +11,7 @@
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/step_ends.hpp"
+#include "sinew/sim/work.hpp"
 
 namespace sinew {
 
@@ -177,62 +178,68 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
   return reached;
 }
 
-/// A part of a quasi-static step, from one equilibrium to another.
-struct Part {
+/// What lies between two equilibria of a quasi-static step.
+struct Between {
   const Model& model;
   const Ramp& ramp;
   const State& from;
-  double begin = 0.0;  ///< t of `from`
+  double t_from = 0.0;
   const State& to;
-  double end = 0.0;
-  bool let_go = false;  ///< with the loads of its end, not with ones that grew
+  double t_to = 0.0;
+
+  /// [J] By how much weights fall, as gravity is at t; all of it grows with t where it is brought on.
+  double fallen(double t) const {
+    const double whole = model.scene.gravity.norm();
+    const double weight = energy_balance(model, from).weight - energy_balance(model, to).weight;
+    return whole > 0.0 ? ramp.gravity(t).norm() / whole * weight : 0.0;
+  }
 };
 
-/// [J] What is set free from one equilibrium to the next, beyond what friction may take where it ends, and the elastic
-/// energy. Weights that are brought on do the work of their mean, as loads do, or of all of them where the body is let
-/// go.
+/// [J] What is set free, beyond what friction may take at the end, and the elastic energy. Weights have done `fallen`.
 struct SetFree {
   double free = 0.0, elastic = 0.0;
 };
-SetFree set_free(const Part& part) {
-  const Model& model = part.model;
-  const EnergyBalance before = energy_balance(model, part.from), after = energy_balance(model, part.to);
+SetFree set_free(const Between& own, double fallen) {
+  const EnergyBalance before = energy_balance(own.model, own.from), after = energy_balance(own.model, own.to);
   double rubbed = 0.0;
-  for (const ContactState& own : part.to.contacts)
-    rubbed += (own.force - own.force.dot(own.normal) * own.normal).norm() * own.slip;
-  for (const int point : model.rubbing)
-    rubbed += std::abs(part.to.points[point].friction * (part.to.points[point].s - part.from.points[point].s));
-  const double whole = model.scene.gravity.norm();
-  const double when = part.let_go ? part.end : 0.5 * (part.begin + part.end);
-  const double mean = whole > 0.0 ? part.ramp.gravity(when).norm() / whole : 0.0;
-  const double held =
-      after.elastic + after.kinetic + mean * after.weight - (before.elastic + before.kinetic + mean * before.weight);
-  return {part.to.energies.work - part.from.energies.work - held - rubbed, std::max(before.elastic, after.elastic)};
+  for (const ContactState& contact : own.to.contacts)
+    rubbed += (contact.force - contact.force.dot(contact.normal) * contact.normal).norm() * contact.slip;
+  for (const int point : own.model.rubbing)
+    rubbed += std::abs(own.to.points[point].friction * (own.to.points[point].s - own.from.points[point].s));
+  const double held = after.elastic + after.kinetic - before.elastic - before.kinetic;
+  return {own.to.energies.work - own.from.energies.work + fallen - held - rubbed,
+          std::max(before.elastic, after.elastic)};
 }
 constexpr double kFree = 1e-3;  ///< of the elastic energy: what steps of a load leave undecided
 
-/// Whether a step between equilibria with contacts has gone over to others than those that go on from where it began:
-/// down, or up, where nothing brings it.
-bool jumped(const Part& part) {
+/// Whether a step between equilibria has gone over to others than those that go on from where it began: down, or up,
+/// where nothing brings it.
+bool jumped(const Between& own) {
   constexpr double kNear = 0.01;    // of the scene's size
   constexpr double kBeyond = 0.03;  // of the elastic energy: the work of a long, curved way is not known better
-  if (moved_most(part.model, part.from, part.to).far <= kNear * part.model.size) return false;
-  const SetFree own = set_free(part);
-  return std::abs(own.free) > kBeyond * own.elastic;
+  if (moved_most(own.model, own.from, own.to).far <= kNear * own.model.size) return false;
+  const SetFree set = set_free(own, own.fallen(0.5 * (own.t_from + own.t_to)));  // (trapezium, as loads that grow)
+  return std::abs(set.free) > kBeyond * set.elastic;
 }
 
-/// Warning `snapped` where energy was set free on the way between two equilibria.
-std::optional<Warning> snapped(const Part& part) {
-  const auto [free, size] = set_free(part);
-  if (!(free > kFree * size) || !(free > 1e-14 * part.model.bearing * part.model.size)) return {};  // (rounding)
-  const Moved most = moved_most(part.model, part.from, part.to);
+/// Warning `snapped` where a body that was let go has set energy free. It was so with the loads of the end, which do
+/// more than loads that grow would: by up to what these differ by on the way, and that is no snap.
+std::optional<Warning> snapped(Memory& memory, const Between& own) {
+  const SetFree set = set_free(own, own.fallen(own.t_to));
+  along(own.ramp, own.from)(own.t_to, memory.context);
+  const Work by_loads = work(memory.context, own.to, {});
+  const double more =
+      std::max(0.0, by_loads.end - by_loads.start) + std::max(0.0, own.fallen(own.t_to) - own.fallen(own.t_from));
+  if (!(set.free - more > kFree * set.elastic)) return {};
+  if (!(set.free > 1e-14 * own.model.bearing * own.model.size)) return {};  // (rounding is none)
+  const Moved most = moved_most(own.model, own.from, own.to);
   return Warning{.code = "snapped",
                  .where = most.name,
                  .message = "no equilibrium goes on from the one before: it lets go, moves by " +
-                            three_digits(1e3 * most.far) + " mm and sets " + three_digits(free) + " J free",
+                            three_digits(1e3 * most.far) + " mm and sets " + three_digits(set.free) + " J free",
                  .remedy = "see how it moves with `analysis: dynamic`",
-                 .time = part.to.time,
-                 .value = free / size,
+                 .time = own.to.time,
+                 .value = set.free / std::max(set.elastic, 1e-6 * set.free),
                  .limit = kFree,
                  .steps = 1};
 }
@@ -383,23 +390,22 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
   std::vector<Warning> snaps;
-  // Lets go what finds no equilibrium near and looks where it comes to rest at t; false where the run is to end.
-  const auto let_go = [&](const Iterate& from, double t, Reached& next) {
-    next = settle(memory, ramp, from.state, t, iteration_limit - spent.newton);
+  bool stops = false;  // as `snap: stop` asks
+  const auto let_go = [&](const Iterate& from, double t) {
+    Reached next = settle(memory, ramp, from.state, t, iteration_limit - spent.newton);
     add_effort(next.report, spent);
-    if (!sound(next)) return true;
-    std::optional<Warning> snap = snapped({model, ramp, from.state, from.t, next.at.state, t, true});
-    if (!snap) return true;
-    if (model.scene.snap == Snap::stop) {
+    if (!sound(next)) return next;
+    std::optional<Warning> snap = snapped(memory, {model, ramp, from.state, from.t, next.at.state, t});
+    stops = snap && model.scene.snap == Snap::stop;
+    if (stops) {
       end.report.status = Status::path_lost;
       end.report.detail = snap->where + ": " + snap->message + "; `snap: stop`";
-      return false;
+    } else if (snap) {
+      snaps.push_back(std::move(*snap));
     }
-    snaps.push_back(std::move(*snap));
-    return true;
+    return next;
   };
-  bool goes_on = true;
-  if (!sound(end) || (touches && jumped({model, ramp, state, 0.0, end.at.state, 1.0}))) {
+  if (!sound(end) || jumped({model, ramp, state, 0.0, end.at.state, 1.0})) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
       Reached next = path_step(model, memory, ramp, on);
@@ -417,14 +423,14 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
         part *= 0.5;
         if (part >= kSmallestPart) continue;
         part = kSettledPart;
-        goes_on = let_go(on, std::min(on.t + part, 1.0), next);
-        if (!goes_on || !sound(next)) break;
+        next = let_go(on, std::min(on.t + part, 1.0));
+        if (stops || !sound(next)) break;
       }
       on = next.at;
       part *= 2.0;
       if (on.t == 1.0) end = std::move(next);
     }
-    if (goes_on && on.t != 1.0) {
+    if (!stops && on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
       Reached minimum = go(on.state, 1.0, rules);
       add_effort(minimum.report, spent);
