@@ -64,6 +64,36 @@ TEST(Snap, the_energy_set_free_is_what_damped_motion_dissipates) {
   EXPECT_NEAR(rest.last("mid.z"), run.last("mid.z"), 1e-5);
 }
 
+// A ball pushes an arch on hinges down, past its largest load, until that presses no longer: from there it goes on
+// alone.
+TEST(Snap, a_ball_pushes_an_arch_through) {
+  const RecordedRun path = arch(
+      "arch_pressed", {"rods.arch.base=[turn_z]", "couplings.0.tie.about=[]", "rods.arch.section.circle.radius=4 mm"});
+  ASSERT_TRUE(path.done()) << path.why();
+  const std::vector<double> z = path.signal("mid.z"), energy = path.signal("energy.elastic");
+  const auto force = [&](std::size_t i) { return -(energy[i + 1] - energy[i - 1]) / (z[i + 1] - z[i - 1]); };
+  double largest = 0.0;
+  std::size_t free = 1;
+  for (; force(free) > 0.0; ++free) largest = std::max(largest, force(free));
+  const double lets_go = (8e-3 - z[free]) / 14e-3;  // [s], as the ball goes down by 14 mm/s
+  std::size_t rests = free;
+  while (force(rests) <= 0.0) ++rests;
+  const double set_free = energy[free] - energy[rests];
+  for (const double step : {0.005, 0.01}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = arch("arch_pushed", {"time.step=" + std::to_string(step)});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_NEAR(run.largest("f.normal"), largest, 2e-3 * largest);
+    const Warning* told = run.warning("snapped");
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->where, "rods.arch");
+    EXPECT_NEAR(told->time, lets_go, step);
+    EXPECT_NEAR(told->value, set_free / energy[free], 0.03 * set_free / energy[free]);
+    EXPECT_NEAR(run.last("energy.elastic"), energy[rests], 1e-5 * energy[rests]);
+    EXPECT_EQ(run.last("f.contacts"), 0.0);
+  }
+}
+
 const std::vector<std::string> no_floor = {"obstacles={}", "outputs={mid: {rod: arch, at: 0.1}}"};
 
 std::vector<std::string> and_no_floor(std::vector<std::string> changes) {

@@ -228,6 +228,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     }
     if (!rules.fixed) memory.contacts.look(iterate.state.contacts);
     report.residual = here.scale() > 0.0 ? here.largest() / here.scale() : 0.0;
+    memory.residuals = {memory.residuals[1], memory.residuals[2], report.residual};
     report.violation = here.violation();
     if (!here.finite() || !std::isfinite(iterate.t)) {
       const std::string where = broken_cell(context.model, iterate.state);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 
@@ -86,6 +87,9 @@ struct Memory {
   LineSearch search;
   ComingAndGoing contacts;
   Iterate iterate;
+  /// Unbalanced force over the largest that acts, of Newton's last three iterates, the newest last: they tell how it
+  /// contracts.
+  std::array<double, 3> residuals = {};
   Command command;
   Inverse inverse;
   double alarm = 0.0;                  ///< [m] within which contacts are looked for
