@@ -31,7 +31,10 @@ Model pressed_beam(const Press& own) {
   });
 }
 
+// Of order 1.5 at least, whatever constant goes with it; but contacts are corrected to half the tolerance, no further.
 TEST(Contraction, of_a_ball_on_a_beam_at_rest_is_quadratic_slow) {
+  const auto at_most = [](double before) { return 10.0 * std::pow(before, 1.5); };
+  const double corrected = 5e-10;
   fmt::print("| cells | place, mm | friction | step, ms | last residuals |\n|---|---|---|---|---|\n");
   for (const auto& [nx, ny, nz] : {std::array{6, 2, 2}, {10, 3, 3}, {16, 5, 5}}) {
     for (const double place : {0.1, 0.08, 0.05}) {
@@ -48,8 +51,8 @@ TEST(Contraction, of_a_ball_on_a_beam_at_rest_is_quadratic_slow) {
           const auto [first, second, last] = workspace.memory().residuals;
           fmt::print("| {} x {} x {} | {} | {} | {} | {:.0e}, {:.0e}, {:.0e} |\n", nx, ny, nz, 1e3 * place, friction,
                      1e3 * step, first, second, last);
-          const double order = std::log(last / second) / std::log(second / first);
-          EXPECT_TRUE(last < 1e-12 || order > 1.5) << order;
+          EXPECT_LE(second, at_most(first));
+          EXPECT_LE(last, std::max(at_most(second), corrected));
         }
       }
     }
