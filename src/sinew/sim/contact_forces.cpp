@@ -174,6 +174,21 @@ int ContactForces::held(const ContactRoom& room) const {
   return static_cast<int>((own.array() < -1e-12 * own.cwiseAbs().maxCoeff()).count());
 }
 
+bool ContactForces::conserve(const StepContext& context, const State& iterate, const ContactRoom& room, double scale) {
+  constexpr double kPresses = 1e-8;
+  if (!context.model.rubbing.empty()) return false;
+  const auto bends = [](const ContactSide& side) { return side.on.kind == Kind::rod || side.on.kind == Kind::solid; };
+  const auto stands = [](const ContactSide& side) { return side.on.kind == Kind::obstacle; };
+  return std::all_of(room.playing.begin(), room.playing.end(), [&](int number) {
+    const ContactState& own = iterate.contacts[number];
+    const Touch& touch = room.touches[static_cast<std::size_t>(number)];
+    const double force = touch.force.dot(touch.nearest.normal);
+    if (force == 0.0) return true;
+    return force > kPresses * scale && context.model.pairs[own.pair].friction == 0.0 &&
+           ((bends(own.a) && stands(own.b)) || (bends(own.b) && stands(own.a)));
+  });
+}
+
 /// What forces at the contacts add to a right side of the reduced problem.
 void ContactForces::push(const StepContext& context, const Eigen::VectorXd& lambda, const std::vector<FreeMotion>& free,
                          solve::RightSide& side) {

@@ -36,6 +36,9 @@ class ContactForces {
   /// How many directions in which the step's matrix A is negative are held by contacts that press and stick: the
   /// negative eigenvalues of their part of D. `prepare` must have gone before.
   int held(const ContactRoom& room) const;
+  /// Whether the tangent has all that contacts which press do, and each of them holds: frictionless, on obstacles, by
+  /// rods or solids, with forces that are no rounding beside `scale` [N].
+  static bool conserve(const StepContext& context, const State& iterate, const ContactRoom& room, double scale);
   /// Finds the forces that go with the solution so far, and adds to it what they change. Where the rows are known to
   /// move by e [m] `beyond` J dx (sim/contact_correction), it begins with the forces that it found last.
   void solve(const StepContext& context, const State& iterate, const ContactRoom& room, std::vector<FreeMotion>& free,

@@ -285,6 +285,11 @@ bool Linearization::unstable() {
   return negative_ + border.negative > context_->model.rows;
 }
 
+std::optional<bool> Linearization::unstable_between_contacts() {
+  if (!stability_known() || !contact_forces_.conserve(*context_, *iterate_, contacts_, scale_)) return {};
+  return loose() > 0;
+}
+
 void Linearization::solve(const Linearization& right, Increment& increment, const Steer& steer,
                           std::optional<solve::CoupledFactor::Part> rough) {
   const Clock clock(times_->solve);

@@ -76,6 +76,9 @@ class Linearization {
   bool stability_known() const;
   /// The tangent has more negative eigenvalues than there are rows. False where that is not known.
   bool unstable();
+  /// The same in motions that leave contacts which press where they are, as a body makes that they hold. None where
+  /// that is not known: contacts with friction, of two things that move, of rigid bodies, or that hardly press.
+  std::optional<bool> unstable_between_contacts();
   /// Numbers of unknowns z that nothing resists, where `unstable` has looked.
   const std::vector<int>& unresisted() const { return unresisted_; }
   /// What was last solved in single precision could not be refined to what double precision gives.

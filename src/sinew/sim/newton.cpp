@@ -251,8 +251,11 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
         // What is stable without contacts is so with them; of the rest they may hold what would buckle.
         const auto presses = [](const ContactState& own) { return !own.force.isZero(); };
         const std::vector<ContactState>& contacts = iterate.state.contacts;
-        if (report.unstable && std::any_of(contacts.begin(), contacts.end(), presses))
-          report.stability_known = report.unstable = false;
+        if (report.unstable && std::any_of(contacts.begin(), contacts.end(), presses)) {
+          const std::optional<bool> held = here.unstable_between_contacts();
+          report.stability_known = held.has_value();
+          report.unstable = held.value_or(false);
+        }
       }
       write_forces(here, iterate.state);
       return complete();

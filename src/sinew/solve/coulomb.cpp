@@ -340,7 +340,7 @@ bool Coulomb::follow(const CoulombProblem& problem, const Eigen::VectorXd& lambd
   return true;
 }
 
-CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda) {
+CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, double nearly) {
   CoulombReport report;
   measure(problem);
   best_ = lambda;
@@ -356,7 +356,8 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
   // How far forces may yield in a turn of Newton, measured: stiff solids, whose own compliance is small beside that of
   // their motion as a whole, want little, piles of rigid bodies, whose forces are not decided, more.
   constexpr double kYields[] = {1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-2, 1e-5};
-  int sweeps = 4;
+  constexpr int kIdle = 2;
+  int sweeps = 4, idle = 0;
   report.solved = report.residual.largest() <= tolerance;
   // Sweeps look at one contact after the other and let go of what only all of them hold: there the forces that there
   // are tell what is closed.
@@ -365,8 +366,9 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
   }
-  for (std::size_t turn = 0; turn < std::size(kYields) && !report.solved; ++turn) {
+  for (std::size_t turn = 0; turn < std::size(kYields) && !report.solved && idle < kIdle; ++turn) {
     lambda = best_;
+    const double before = report.residual.largest();
     // (Sweeps may have to get worse before they get better: the last ones, which are many, begin afresh.)
     if (turn + 1 == std::size(kYields)) lambda.setZero();
     for (int i = 0; i < sweeps; ++i, ++report.sweeps) sweep(problem, lambda);
@@ -376,6 +378,7 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
     sweeps *= 2;
+    idle = before <= nearly && report.residual.largest() > 0.5 * before ? idle + 1 : 0;
   }
   lambda = best_;
   return report;

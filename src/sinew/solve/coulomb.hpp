@@ -63,8 +63,8 @@ struct CoulombPiece {
 class Coulomb {
  public:
   /// `lambda` is where it starts (3n, the forces of the last step or zero) and the solution, or the best that was
-  /// found.
-  CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda);
+  /// found. What is solved to `nearly`, and what two turns do not improve by half, is left there.
+  CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, double nearly = 0.0);
 
   /// What each contact does at a solution.
   void modes(const CoulombProblem& problem, const Eigen::VectorXd& lambda, std::vector<CoulombPiece>& modes);

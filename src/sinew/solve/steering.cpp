@@ -19,6 +19,7 @@ constexpr double kChoice = 1e-6;
 constexpr double kKink = 1e-6;
 constexpr double kMet = 1e-5;        ///< weighed error that does not matter
 constexpr double kContacts = 1e-10;  ///< tolerance of forces at contacts
+constexpr double kNearly = 1e-5;     ///< is enough where rounding, or forces that are not decided, keep it from that
 
 /// H = J^T J, held a little.
 void gauss(const Eigen::MatrixXd& J, Eigen::MatrixXd& H) {
@@ -41,7 +42,7 @@ void Steering::place(const SteeringProblem& problem, Point& at) {
   at.rows.noalias() = problem.A.lazyProduct(at.p);
   if (problem.held.size() == 0) return;
   contacts_.b = problem.contacts.b + problem.B * at.p;
-  coulomb_.solve(contacts_, kContacts, at.lambda);
+  coulomb_.solve(contacts_, kContacts, at.lambda, kNearly);
   coulomb_.modes(contacts_, at.lambda, at.modes);
   const Eigen::VectorXd more = at.lambda - problem.held;
   at.e.noalias() += problem.L * more;
