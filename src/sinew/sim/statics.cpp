@@ -187,19 +187,19 @@ struct Between {
   const State& to;
   double t_to = 0.0;
 
-  /// [J] By how much weights fall, as gravity is at t; all of it grows with t where it is brought on.
-  double fallen(double t) const {
+  /// Part of the scene's gravity at t; all of it grows with t where it is brought on.
+  double gravity(double t) const {
     const double whole = model.scene.gravity.norm();
-    const double weight = energy_balance(model, from).weight - energy_balance(model, to).weight;
-    return whole > 0.0 ? ramp.gravity(t).norm() / whole * weight : 0.0;
+    return whole > 0.0 ? ramp.gravity(t).norm() / whole : 0.0;
   }
 };
 
-/// [J] What is set free, beyond what friction may take at the end, and the elastic energy. Weights have done `fallen`.
+/// [J] What is set free with the gravity of t, beyond what friction may take at the end; the elastic energy, and what
+/// weights lose under all of gravity.
 struct SetFree {
-  double free = 0.0, elastic = 0.0;
+  double free = 0.0, elastic = 0.0, fallen = 0.0;
 };
-SetFree set_free(const Between& own, double fallen) {
+SetFree set_free(const Between& own, double t) {
   const EnergyBalance before = energy_balance(own.model, own.from), after = energy_balance(own.model, own.to);
   double rubbed = 0.0;
   for (const ContactState& contact : own.to.contacts)
@@ -207,8 +207,9 @@ SetFree set_free(const Between& own, double fallen) {
   for (const int point : own.model.rubbing)
     rubbed += std::abs(own.to.points[point].friction * (own.to.points[point].s - own.from.points[point].s));
   const double held = after.elastic + after.kinetic - before.elastic - before.kinetic;
-  return {own.to.energies.work - own.from.energies.work + fallen - held - rubbed,
-          std::max(before.elastic, after.elastic)};
+  const double fallen = before.weight - after.weight;
+  return {own.to.energies.work - own.from.energies.work + own.gravity(t) * fallen - held - rubbed,
+          std::max(before.elastic, after.elastic), fallen};
 }
 constexpr double kFree = 1e-3;  ///< of the elastic energy: what steps of a load leave undecided
 
@@ -218,18 +219,18 @@ bool jumped(const Between& own) {
   constexpr double kNear = 0.01;    // of the scene's size
   constexpr double kBeyond = 0.03;  // of the elastic energy: the work of a long, curved way is not known better
   if (moved_most(own.model, own.from, own.to).far <= kNear * own.model.size) return false;
-  const SetFree set = set_free(own, own.fallen(0.5 * (own.t_from + own.t_to)));  // (trapezium, as loads that grow)
+  const SetFree set = set_free(own, 0.5 * (own.t_from + own.t_to));  // (trapezium, as loads that grow)
   return std::abs(set.free) > kBeyond * set.elastic;
 }
 
 /// Warning `snapped` where a body that was let go has set energy free. It was so with the loads of the end, which do
 /// more than loads that grow would: by up to what these differ by on the way, and that is no snap.
 std::optional<Warning> snapped(Memory& memory, const Between& own) {
-  const SetFree set = set_free(own, own.fallen(own.t_to));
+  const SetFree set = set_free(own, own.t_to);
   along(own.ramp, own.from)(own.t_to, memory.context);
   const Work by_loads = work(memory.context, own.to, {});
-  const double more =
-      std::max(0.0, by_loads.end - by_loads.start) + std::max(0.0, own.fallen(own.t_to) - own.fallen(own.t_from));
+  const double more = std::max(0.0, by_loads.end - by_loads.start) +
+                      std::max(0.0, (own.gravity(own.t_to) - own.gravity(own.t_from)) * set.fallen);
   if (!(set.free - more > kFree * set.elastic)) return {};
   if (!(set.free > 1e-14 * own.model.bearing * own.model.size)) return {};  // (rounding is none)
   const Moved most = moved_most(own.model, own.from, own.to);
