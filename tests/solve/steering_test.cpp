@@ -22,9 +22,10 @@ class Random {
     return M;
   }
 
-  SteeringProblem problem(int commands, int contacts, double friction) {
+  /// `motions`: in how many ways the body can move, none: in enough to decide all forces.
+  SteeringProblem problem(int commands, int contacts, double friction, Eigen::Index motions = 0) {
     const Eigen::Index n = commands, k = 3 * contacts, e = n + 1, all = n + k + e;
-    const Eigen::MatrixXd R = matrix(all, all + 2);
+    const Eigen::MatrixXd R = matrix(all, motions > 0 ? motions : all + 2);
     const Eigen::MatrixXd W = R * R.transpose() / static_cast<double>(all);
     SteeringProblem own;
     own.J = W.block(n + k, 0, e, n);
@@ -168,6 +169,24 @@ TEST(Steering, BreaksTheLessFirm) {
   ASSERT_EQ(steering.broken().size(), 1U);
   EXPECT_EQ(steering.broken()[0].row, 0);
   EXPECT_EQ(steering.broken()[0].at, At::lower);
+}
+
+/// Hundreds of contacts of what moves in a dozen ways, solved anew for each p, are more work than a step is worth: what
+/// was found by then stands, is no worse than nothing and is not said to be the best.
+TEST(Steering, EndsAtALimitOfWork) {
+  Random random(5);
+  Steering steering;
+  const SteeringProblem few = random.problem(2, 8, 0.4);
+  ASSERT_TRUE(steering.solve(few));
+  EXPECT_FALSE(steering.cut_short());
+  const SteeringProblem many = random.problem(3, 150, 0.4, 12);
+  ASSERT_TRUE(steering.solve(many));
+  EXPECT_TRUE(steering.cut_short());
+  EXPECT_FALSE(steering.certain());
+  EXPECT_LE(steering.left().norm(), many.e.norm() * (1.0 + 1e-4));  // (forces are solved to 1e-5)
+  EXPECT_EQ(steering.pulls().size(), many.A.rows());
+  ASSERT_TRUE(steering.solve(few));
+  EXPECT_FALSE(steering.cut_short());
 }
 
 }  // namespace

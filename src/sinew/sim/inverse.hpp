@@ -27,6 +27,8 @@ class Inverse {
   void take(double fraction, const Model& model, Command& command) const;
   /// No increment would change a command, or what it does to the effectors, by anything to speak of.
   bool settled(const Command& command, const Model& model) const;
+  /// The best commands of a linearisation were looked for in vain: with many contacts that is too much work.
+  bool cut_short() const { return steering_.cut_short(); }
   /// How far the linearisation's increments would move the effectors, weighed.
   double motion() const { return (steering_.left() - problem_.e).norm(); }
   /// What searches make small: half the square of weighed errors, and what it costs to be beyond limits. `weigh_limits`

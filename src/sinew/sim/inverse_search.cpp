@@ -28,6 +28,8 @@ void check(const Model& model, const Goal& goal) {
 
 /// Of a search, and of one for a step in time, whose next one goes on.
 constexpr int kMostTurns = 60, kMostTurnsInMotion = 12;
+/// Iterations of Newton, in multiples of `newton.limit`, after which no search turns once more.
+constexpr int kMostOfSearch = 40;
 /// First region of trust, as a part of the scene's size.
 constexpr double kFirstReach = 0.2;
 /// Half the square of a weighed error that is as good as none.
@@ -93,7 +95,8 @@ struct Found {
   Command told;
   StepResult at;
   StepReport spent;
-  bool short_of = false;  ///< commands that would come nearer lead nowhere: no step or equilibrium was found
+  bool short_of = false;   ///< commands that would come nearer lead nowhere: no step or equilibrium was found
+  bool cut_short = false;  ///< commands that may come nearer were not looked for: it would have been too much work
 
   void add(const StepReport& report) { add_effort(report, spent); }
   void tell(StepReport& report) const {
@@ -123,7 +126,9 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
     if (!ok) break;
     inverse.weigh_limits();
     const double cost = inverse.cost(model, found.at.next), promised = cost - inverse.promised();
-    settled = inverse.motion() <= Inverse::kSettled && inverse.settled(found.told, model) && promised <= kNoGain;
+    found.cut_short = inverse.cut_short() || found.spent.newton > kMostOfSearch * model.scene.newton.limit;
+    settled = !found.cut_short && inverse.motion() <= Inverse::kSettled && inverse.settled(found.told, model) &&
+              promised <= kNoGain;
     if (settled) break;
     Command next = found.told;
     inverse.take(1.0, model, next);
@@ -144,11 +149,11 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
       found.at = std::move(trial);
       found.told = next;
       came_nearer = true;
-      if (moves && found.short_of) break;
+      if ((moves && found.short_of) || found.cut_short) break;
     } else {
       reach = 0.25 * std::min(reach, moved);
       settled = !(reach > Inverse::kSettled) && !found.short_of;
-      if (!(reach > Inverse::kSettled)) break;
+      if (!(reach > Inverse::kSettled) || found.cut_short) break;
     }
   }
   inverse.reach = INFINITY;
@@ -176,7 +181,7 @@ StepReport search_step(const Model& model, Memory& memory, const NewtonRules& fo
   found.tell(report);
   if (!accepted(report.status)) return report;
   report.aim = memory.inverse.aim(model, found.at.next);
-  report.aim.short_of = found.short_of && report.aim.outcome != Aim::Outcome::reached;
+  report.aim.short_of = (found.short_of || found.cut_short) && report.aim.outcome != Aim::Outcome::reached;
   state = std::move(found.at.next);
   return report;
 }
@@ -236,6 +241,7 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   StepReport report = found.at.report;
   found.tell(report);
   report.aim = inverse.aim(model, found.at.next);
+  report.aim.short_of = found.cut_short && report.aim.outcome != Aim::Outcome::reached;
   state = std::move(found.at.next);
   return report;
 }

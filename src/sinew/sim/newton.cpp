@@ -293,6 +293,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (rules.inverse) {
       const auto steer = [&](Increment& step) { rules.inverse->steer(context, iterate.state, here, step); };
       here.solve(increment, std::cref(steer), rules.inverse->part());  // (a copy would ask for memory)
+      if (!rules.fixed && rules.inverse->cut_short())
+        return fail(Status::max_iterations, "commands together with " + std::to_string(here.contacts().playing.size()) +
+                                                " contacts are too much work");
     } else {
       here.solve(increment);
     }

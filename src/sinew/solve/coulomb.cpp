@@ -167,6 +167,7 @@ void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda) {
 double Coulomb::evaluate(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
   u_.noalias() = problem.D * lambda;
   u_ += problem.b;
+  work_ += static_cast<double>(problem.D.size());
   F_.resize(lambda.size());
   for (int i = 0; i < problem.contacts(); ++i) {
     const auto k = 3 * i;
@@ -237,6 +238,7 @@ bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda)
     J_.block<3, 3>(row, row) += A + B * yields.asDiagonal();
     right_.segment<3>(row) = -F_.segment<3>(k) - B * moved.segment<3>(k);
   }
+  work_ += std::pow(static_cast<double>(n), 3) / 3.0;
   const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> lu(J_);
   right_ = lu.solve(right_).eval();
   if (!right_.allFinite()) return false;
@@ -343,6 +345,7 @@ bool Coulomb::follow(const CoulombProblem& problem, const Eigen::VectorXd& lambd
 CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, double nearly) {
   CoulombReport report;
   measure(problem);
+  work_ = 0.0;
   best_ = lambda;
   report.residual = residual(problem, lambda);
   const auto keep = [&] {
@@ -381,6 +384,7 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     idle = before <= nearly && report.residual.largest() > 0.5 * before ? idle + 1 : 0;
   }
   lambda = best_;
+  report.work = work_ + report.sweeps * static_cast<double>(problem.D.size());
   return report;
 }
 

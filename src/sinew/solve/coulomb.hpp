@@ -47,6 +47,7 @@ struct CoulombReport {
   bool solved = false;  ///< to the tolerance
   int sweeps = 0;       ///< of block Gauss-Seidel
   int newton = 0;       ///< steps of semi-smooth Newton
+  double work = 0.0;    ///< multiplications, about
   CoulombResidual residual;
 };
 
@@ -83,7 +84,7 @@ class Coulomb {
   bool step(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
   bool newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps);
 
-  double yield_ = 0.0;
+  double yield_ = 0.0, work_ = 0.0;
   Eigen::VectorXd u_, F_, step_, trial_, best_, held_, lost_, right_, scale_n_, scale_t_;
   Eigen::MatrixXd J_, sides_;
   std::vector<int> active_;

@@ -42,7 +42,7 @@ void Steering::place(const SteeringProblem& problem, Point& at) {
   at.rows.noalias() = problem.A.lazyProduct(at.p);
   if (problem.held.size() == 0) return;
   contacts_.b = problem.contacts.b + problem.B * at.p;
-  coulomb_.solve(contacts_, kContacts, at.lambda, kNearly);
+  work_ += coulomb_.solve(contacts_, kContacts, at.lambda, kNearly).work;
   coulomb_.modes(contacts_, at.lambda, at.modes);
   const Eigen::VectorXd more = at.lambda - problem.held;
   at.e.noalias() += problem.L * more;
@@ -191,10 +191,13 @@ bool Steering::search(const SteeringProblem& problem, Point& at, int halvings) {
     place(problem, trial_);
     const double gain = before - cost(trial_);
     if (best > 0.0 && !(gain > best)) break;
-    if (!(gain >= 1e-3 * part * promise_)) continue;
+    if (!(gain >= 1e-3 * part * promise_)) {
+      if (cut_short()) break;
+      continue;
+    }
     best = gain;
     std::swap(best_, trial_);
-    if (gain >= 0.5 * part * promise_) break;
+    if (gain >= 0.5 * part * promise_ || cut_short()) break;
   }
   if (!(best > 0.0)) return false;
   std::swap(at, best_);
@@ -205,7 +208,7 @@ bool Steering::descend(const SteeringProblem& problem, Point& at) {
   constexpr int kMost = 60;
   penalty_.setZero(problem.A.rows());
   place(problem, at);
-  for (int turn = 0; turn < kMost; ++turn) {
+  for (int turn = 0; turn < kMost && !(turn > 0 && cut_short()); ++turn) {
     if (!piece(problem, at, Stay::anywhere)) return turn > 0;
     const double size = cost(at);
     if (!(promise_ > 1e-13 * size)) return true;
@@ -214,7 +217,7 @@ bool Steering::descend(const SteeringProblem& problem, Point& at) {
     // In a kink: what contacts may do as well.
     bool better = false;
     const std::vector<CoulombPiece> modes = at.modes;
-    for (std::size_t i = 0; i < modes.size() && !better; ++i) {
+    for (std::size_t i = 0; i < modes.size() && !better && !cut_short(); ++i) {
       const CoulombPiece& own = modes[i];
       const bool opens = std::abs(own.normal) <= kKink, slips = own.mode != Mode::open &&
                                                                 contacts_.mu[static_cast<Eigen::Index>(i)] > 0.0 &&
@@ -400,6 +403,7 @@ bool Steering::solve(const SteeringProblem& problem) {
   here_.upper = problem.upper;
   here_.broken.clear();
   here_.modes.clear();
+  work_ = 0.0;
   certain_ = !touches;
   if (!touches) {
     penalty_.setZero(problem.A.rows());
@@ -422,6 +426,7 @@ bool Steering::solve(const SteeringProblem& problem) {
     penalty_ = penalty_.cwiseMax(before);
     if (cost(there_) < cost(here_) * (1.0 - 1e-9)) std::swap(here_, there_);
   };
+  if (cut_short()) return here_.p.allFinite() && here_.lambda.allFinite();
   there_ = start;
   if (slide(problem, there_)) try_from_there();
   there_ = start;

@@ -56,6 +56,8 @@ class Steering {
     return strength_;
   }  ///< of each limit: a pull that matters is not far below
   const std::vector<Broken>& broken() const { return here_.broken; }
+  /// The search ended at its limit of work, with many contacts: p is the best it had come to, no minimum.
+  bool cut_short() const { return work_ > kMostWork; }
   /// No other p within the limits does better: without contacts, and without friction where branch and bound has come
   /// to its end.
   bool certain() const { return certain_; }
@@ -64,6 +66,7 @@ class Steering {
   const Eigen::MatrixXd& reaction(const SteeringProblem& problem);
 
  private:
+  static constexpr double kMostWork = 1e9;  ///< multiplications, most of a second: contacts solved anew for each p
   struct Point {
     Eigen::VectorXd p, lambda, e, rows;
     Eigen::VectorXd lower, upper;  ///< of rows, some of them widened
@@ -88,7 +91,7 @@ class Steering {
   Eigen::MatrixXd S_, J_, A_, H_, scaled_, kept_;
   Eigen::VectorXd g_, d_, lower_, upper_, kept_lower_, kept_upper_, pulls_, strength_, penalty_, unit_;
   Eigen::JacobiSVD<Eigen::MatrixXd> svd_;
-  double promise_ = 0.0;
+  double promise_ = 0.0, work_ = 0.0;
   bool certain_ = false;
 };
 
