@@ -338,6 +338,35 @@ TEST_F(Inverse, TargetsThatJumpAreFollowedOverSteps) {
   EXPECT_NEAR(robot.tip().y(), -10 * mm, 0.5 * mm);
 }
 
+/// No force brings a tip 15 mm away within a millisecond, but those that crush the body on the way: it is come to in
+/// many steps, by commands no larger than what an equilibrium there takes.
+TEST_F(Inverse, FarTargetsAreComeToWithoutViolence) {
+  Scene scene = two_cables();
+  scene.newton.iterations = 0;
+  scene.time = {0.001, 0.1};
+  const Vec3 tip(50 * mm, 5 * mm, 5 * mm), goal = tip - 15 * mm * Vec3::UnitY();
+  scene.targets[0].at = Track{{0.0}, {goal}};
+  scene.targets[0].weights = {0, 1, 0};
+  Robot robot(scene);
+  scene.analysis = Analysis::quasi_static;
+  Robot resting(scene);
+  ASSERT_TRUE(accepted(resting.settle(goal).status));
+  const auto pulls = [](const State& state) { return std::max(state.actuators[0], state.actuators[1]); };
+  const double enough = pulls(resting.state);
+  double most = 0.0, shortest = INFINITY;
+  const RunEnd end = run(robot.model, robot.state, [&](const State& state, const StepReport&) {
+    robot.state = state;
+    most = std::max(most, pulls(state));
+    shortest = std::min(shortest, robot.tip().x());
+    return true;
+  });
+  EXPECT_EQ(end, RunEnd::done) << robot.state.time;
+  EXPECT_NEAR(robot.tip().y(), goal.y(), 2 * mm);
+  EXPECT_GT(enough, 0.1);
+  EXPECT_LT(most, 4.0 * enough);
+  EXPECT_GT(shortest, 0.8 * resting.tip().x());
+}
+
 /// Parts of a halved step make for places on the way: straight, by an even turn, in proportion.
 TEST_F(Inverse, PartsOfAStepGoPartsOfTheWay) {
   Scene scene = hinged();

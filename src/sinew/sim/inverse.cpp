@@ -58,6 +58,7 @@ void Inverse::begin(const Model& model, const State& start, const Goal& goal, do
   weights_.resize(effector_size(model));
   for (const EffectorModel& own : model.effectors) weights_.segment(own.first, own.size) = own.weights;
   preferred_.resize(n);
+  J_.setZero(weights_.size(), n);
   for (Eigen::Index a = 0; a < n; ++a) {
     const int actuator = model.sought[static_cast<std::size_t>(a)];
     start_force_.push_back(start.actuators[actuator]);

@@ -53,6 +53,7 @@ class Inverse {
   void follow_contacts();
   /// Responses of effectors, of the motors' forces and of their places, contacts going on as they are.
   Eigen::MatrixXd jacobian() const { return J_ + L_ * S_; }
+  Eigen::MatrixXd weighed_jacobian() const { return weights_.asDiagonal() * jacobian(); }
   Eigen::MatrixXd force_change() const { return F_ + F_pressed_ * S_; }
   Eigen::MatrixXd position_change() const { return X_ + X_pressed_ * S_; }
 
@@ -82,16 +83,23 @@ class Inverse {
   std::vector<Bound> bounds_, binding_, dropped_;
 };
 
+/// Of a step that is halved.
+struct PartOfStep {
+  const Goal* on_the_way = nullptr;  ///< it may make for another place than the goal by which it is judged
+  bool begins = false;               ///< nothing of the step is behind it
+  bool at_once = false;              ///< nothing longer was tried from here
+};
+
 /// A step as `step` makes, whose sought motors bring the effectors nearest to their goals within their limits. With
 /// `newton: n` of the scene in so many linearisations (1: the paper's one problem a step), else until it has converged.
-/// Where commands and motion together do not converge, in motion, commands are looked for from those of the state on,
-/// in a region of trust, as far towards the goals as steps converge (`Aim::short_of`).
-/// A part of a step may make for another place, on the way to `goal`, by which it is judged all the same.
-/// Of the command the sought
-/// actuators do not count. What came of it is in StepReport::aim. Throws std::invalid_argument where the goal has
-/// another size or is not finite, or the model has no targets.
+/// Where commands and motion together do not converge, in motion, and something presses, commands are looked for from
+/// those of the state on, in a region of trust, as far towards the goals as steps converge; else, and where that leads
+/// nowhere, they are changed a little towards what would bring the effectors to their goals at rest, so that a goal
+/// which is too far for a step is come to in many (`Aim::short_of`). Of the command the sought actuators do not count.
+/// What came of it is in StepReport::aim. Throws std::invalid_argument where the goal has another size or is not
+/// finite, or the model has no targets.
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort = {}, const Goal* on_the_way = nullptr);
+                        State& state, Effort effort = {}, const PartOfStep* part = nullptr);
 
 /// The equilibrium under what is prescribed at `time`, as `equilibrium_step` finds it, with the commands that bring the
 /// effectors nearest to their goals within their limits: Gauss and Newton's method on the exact tangents of equilibria,

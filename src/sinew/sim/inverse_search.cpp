@@ -32,6 +32,8 @@ constexpr int kMostTurns = 60, kMostTurnsInMotion = 12;
 constexpr int kMostOfSearch = 40;
 /// First region of trust, as a part of the scene's size.
 constexpr double kFirstReach = 0.2;
+/// How far, of the scene's size, commands may move effectors in a step by what they do at rest.
+constexpr double kReachAtRest = 0.02;
 /// Half the square of a weighed error that is as good as none.
 constexpr double kMet = 0.5e-4;
 /// What is not worth another turn.
@@ -160,6 +162,54 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
   return settled || came_nearer;
 }
 
+/// Commands are changed towards those whose equilibrium has the effectors at their goals, as far as the linearisation
+/// at a state tells, by no more than moves these by kReachAtRest. Unlike what a step of h would make of them, that is
+/// no more where there is less time. Where what commands do at rest is the opposite of what they do within the step,
+/// there is no equilibrium that stands, and they stay.
+void steer_at_rest(const Model& model, Memory& memory, const State& state, double h, StageTimes& times,
+                   Command& command) {
+  Inverse& inverse = memory.inverse;
+  StepContext& context = memory.context;
+  context.set(state, command, h);
+  memory.iterate.state = state;
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
+  Eigen::MatrixXd at_once, at_rest;
+  const auto look = [&](Increment& increment) {
+    inverse.look(context, memory.iterate.state, memory.here, increment);
+    inverse.follow_contacts();
+    at_once = inverse.weighed_jacobian();
+  };
+  if (!solve_there(memory, solid::Tangent::definite, times, look)) return;
+  context.rate = 0.0;
+  inverse.reach = kReachAtRest * model.size * 1e3;
+  const auto steer = [&](Increment& increment) {
+    inverse.steer(context, memory.iterate.state, memory.here, increment);
+    inverse.follow_contacts();
+    at_rest = inverse.weighed_jacobian();
+  };
+  const bool solved = solve_there(memory, solid::Tangent::exact, times, steer);
+  inverse.reach = INFINITY;
+  if (!solved || !at_rest.allFinite()) return;
+  if ((at_once.cwiseProduct(at_rest).colwise().sum().array() < 0.0).any()) return;
+  inverse.take(1.0, model, command);
+}
+
+/// A step of h with commands `steer_at_rest`, or as they are in the later parts of a step. On failure the state stays.
+StepReport gentle_step(const Model& model, Memory& memory, const NewtonRules& forward, bool steers, Command command,
+                       double h, State& state) {
+  StageTimes times;
+  agree(model, memory, state, state.time + h, times, command);
+  if (steers) steer_at_rest(model, memory, state, h, times, command);
+  StepReport report = step_by(forward, memory, command, h, state);
+  report.newton += steers ? 2 : 0;
+  report.times += times;
+  if (!accepted(report.status)) return report;
+  report.aim = memory.inverse.aim(model, state);
+  report.aim.certain = false;
+  report.aim.short_of = report.aim.outcome != Aim::Outcome::reached;
+  return report;
+}
+
 /// From commands as they are to those that bring the effectors as near to what they make for as steps of h converge.
 /// On failure the state stays.
 StepReport search_step(const Model& model, Memory& memory, const NewtonRules& forward, Command command, double h,
@@ -189,22 +239,40 @@ StepReport search_step(const Model& model, Memory& memory, const NewtonRules& fo
 }  // namespace
 
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort, const Goal* on_the_way) {
+                        State& state, Effort effort, const PartOfStep* part) {
   check(model, goal);
-  if (on_the_way) check(model, *on_the_way);
+  if (part && part->on_the_way) check(model, *part->on_the_way);
   Memory& memory = workspace.memory();
-  memory.inverse.begin(model, state, goal, h, on_the_way);
   memory.command = command;
   for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
   const NewtonRules forward = step_rules(model, effort);
-  NewtonRules rules = forward;
-  rules.inverse = &memory.inverse;
-  StepReport report = step_by(rules, memory, memory.command, h, state);
-  if (accepted(report.status) || rules.fixed || model.scene.analysis != Analysis::dynamic) return report;
-  memory.inverse.begin(model, state, goal, h, on_the_way);
-  StepReport searched = search_step(model, memory, forward, memory.command, h, state);
-  if (accepted(searched.status)) std::swap(report, searched);
-  add_effort(searched, report);
+  NewtonRules together = forward;
+  together.inverse = &memory.inverse;
+  StepReport report;
+  bool tried = false;
+  const auto made_by = [&](const Goal* on_the_way, const auto& make) {
+    memory.inverse.begin(model, state, goal, h, on_the_way);
+    StepReport made = make();
+    if (accepted(made.status) || !tried) std::swap(report, made);
+    if (tried) add_effort(made, report);
+    tried = true;
+    return accepted(report.status);
+  };
+  const auto step_together = [&] { return step_by(together, memory, memory.command, h, state); };
+  const auto search = [&] { return search_step(model, memory, forward, memory.command, h, state); };
+  const Goal* const on_the_way = part ? part->on_the_way : nullptr;
+  if (together.fixed || model.scene.analysis != Analysis::dynamic) {
+    made_by(on_the_way, step_together);
+    return report;
+  }
+  // (A part of a step would only ask for more in less time, but that what presses comes and goes with commands: less
+  // time may leave one thing to happen.)
+  const bool presses = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                   [](const ContactState& own) { return !own.force.isZero(0.0); });
+  if ((!part || part->at_once || presses) && made_by(on_the_way, step_together)) return report;
+  if (presses && made_by(on_the_way, search)) return report;
+  made_by(nullptr,
+          [&] { return gentle_step(model, memory, forward, !part || part->begins, memory.command, h, state); });
   return report;
 }
 

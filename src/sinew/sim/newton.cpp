@@ -203,10 +203,12 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   memory.contacts.begin();
   here.forget();
   memory.passage = {};
-  double contradiction = 0.0, left_off = INFINITY;
+  double contradiction = 0.0, left_off = INFINITY, least_off = INFINITY;
   bool again = false;  // an iteration is made once more
   int steady = 0;      // iterations that have made what is off smaller, one after the other
-  constexpr double kContracts = 0.8;
+  int idle = 0;        // iterations since what is off was made smaller than it had ever been
+  constexpr double kContracts = 0.8, kHelps = 0.9;
+  constexpr int kIdle = 8;
   constexpr double kCorrected = 1e-4;  // contacts are corrected to this at least, and as Newton contracts
   constexpr int kSteady = 4, kPatience = 3, kTrial = 2;
   for (;; ++report.newton) {
@@ -268,8 +270,12 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (!again) steady = contracts ? steady + 1 : 0;
     again = false;
     left_off = off;
+    idle = off < kHelps * least_off ? 0 : idle + 1;
+    if (idle == 0) least_off = off;
     if (rules.on_trial && report.newton >= kTrial && !contracts)
       return fail(Status::max_iterations, "the guess that velocities have moved on leads nowhere");
+    if (rules.inverse && context.rate > 0.0 && !rules.fixed && idle >= kIdle)
+      return fail(Status::max_iterations, "commands and motion together lead nowhere");
     const int limit = steady >= kSteady && !context.model.pairs.empty() ? kPatience * rules.limit : rules.limit;
     if (!rules.fixed && report.newton >= limit)
       return fail(Status::max_iterations,
