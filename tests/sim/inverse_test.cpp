@@ -339,7 +339,7 @@ TEST_F(Inverse, TargetsThatJumpAreFollowedOverSteps) {
 }
 
 /// No force brings a tip 15 mm away within a millisecond, but those that crush the body on the way: it is come to in
-/// many steps, by commands no larger than what an equilibrium there takes.
+/// many steps, by commands of the size that an equilibrium there takes.
 TEST_F(Inverse, FarTargetsAreComeToWithoutViolence) {
   Scene scene = two_cables();
   scene.newton.iterations = 0;

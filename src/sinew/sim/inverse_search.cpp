@@ -50,13 +50,14 @@ bool solve_there(Memory& memory, solid::Tangent tangent, StageTimes& times, cons
 
 /// About a state that a step of h from `start` has come to; rate: 1 / h, or 0 of an equilibrium.
 bool linearize_at(Memory& memory, const State& start, const State& state, const Command& command, double h, double rate,
-                  StageTimes& times, const Linearization::Steer& steer) {
+                  StageTimes& times, const Linearization::Steer& steer,
+                  solid::Tangent tangent = solid::Tangent::exact) {
   StepContext& context = memory.context;
   context.set(start, command, h);
   context.rate = rate;
   memory.iterate.state = state;
   find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
-  return solve_there(memory, solid::Tangent::exact, times, steer);
+  return solve_there(memory, tangent, times, steer);
 }
 
 /// Sought commands that agree with those that are told, where rows depend on each other: the nearest to what they are.
@@ -109,6 +110,13 @@ struct Found {
   }
 };
 
+/// What came of it, where larger commands may come nearer (`short_of`) unless all targets are reached.
+Aim aim_at(Inverse& inverse, const Model& model, const State& state, bool short_of) {
+  Aim aim = inverse.aim(model, state);
+  aim.short_of = short_of && aim.outcome != Aim::Outcome::reached;
+  return aim;
+}
+
 /// Gauss and Newton's method in a region of trust, each of whose steps goes where its commands lead, until no increment
 /// helps. A step in time is no further looked for once one was lost on the way: it would end at the brink. False where
 /// nothing better was found although there was more to go.
@@ -117,7 +125,8 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
   const bool moves = way.h > 0.0;
   double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
   bool settled = false, came_nearer = false;
-  for (int turn = 0; turn < (moves ? kMostTurnsInMotion : kMostTurns); ++turn) {
+  const int most = moves ? kMostTurnsInMotion : kMostTurns;
+  for (int turn = 0; turn < most && !found.cut_short; ++turn) {
     inverse.reach = reach;
     const State& start = way.start ? *way.start : found.at.next;
     const bool ok = linearize_at(memory, start, found.at.next, found.told, moves ? way.h : way.time - start.time,
@@ -151,11 +160,11 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
       found.at = std::move(trial);
       found.told = next;
       came_nearer = true;
-      if ((moves && found.short_of) || found.cut_short) break;
+      if (moves && found.short_of) break;
     } else {
       reach = 0.25 * std::min(reach, moved);
       settled = !(reach > Inverse::kSettled) && !found.short_of;
-      if (!(reach > Inverse::kSettled) || found.cut_short) break;
+      if (!(reach > Inverse::kSettled)) break;
     }
   }
   inverse.reach = INFINITY;
@@ -170,16 +179,13 @@ void steer_at_rest(const Model& model, Memory& memory, const State& state, doubl
                    Command& command) {
   Inverse& inverse = memory.inverse;
   StepContext& context = memory.context;
-  context.set(state, command, h);
-  memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
   Eigen::MatrixXd at_once, at_rest;
   const auto look = [&](Increment& increment) {
     inverse.look(context, memory.iterate.state, memory.here, increment);
     inverse.follow_contacts();
     at_once = inverse.weighed_jacobian();
   };
-  if (!solve_there(memory, solid::Tangent::definite, times, look)) return;
+  if (!linearize_at(memory, state, state, command, h, 1.0 / h, times, look, solid::Tangent::definite)) return;
   context.rate = 0.0;
   inverse.reach = kReachAtRest * model.size * 1e3;
   const auto steer = [&](Increment& increment) {
@@ -194,7 +200,8 @@ void steer_at_rest(const Model& model, Memory& memory, const State& state, doubl
   inverse.take(1.0, model, command);
 }
 
-/// A step of h with commands `steer_at_rest`, or as they are in the later parts of a step. On failure the state stays.
+/// A step of h whose commands `steer_at_rest` has changed, or, in the later parts of a step, none. On failure the state
+/// stays.
 StepReport gentle_step(const Model& model, Memory& memory, const NewtonRules& forward, bool steers, Command command,
                        double h, State& state) {
   StageTimes times;
@@ -204,9 +211,8 @@ StepReport gentle_step(const Model& model, Memory& memory, const NewtonRules& fo
   report.newton += steers ? 2 : 0;
   report.times += times;
   if (!accepted(report.status)) return report;
-  report.aim = memory.inverse.aim(model, state);
+  report.aim = aim_at(memory.inverse, model, state, true);
   report.aim.certain = false;
-  report.aim.short_of = report.aim.outcome != Aim::Outcome::reached;
   return report;
 }
 
@@ -230,8 +236,7 @@ StepReport search_step(const Model& model, Memory& memory, const NewtonRules& fo
   StepReport report = found.at.report;
   found.tell(report);
   if (!accepted(report.status)) return report;
-  report.aim = memory.inverse.aim(model, found.at.next);
-  report.aim.short_of = (found.short_of || found.cut_short) && report.aim.outcome != Aim::Outcome::reached;
+  report.aim = aim_at(memory.inverse, model, found.at.next, found.short_of || found.cut_short);
   state = std::move(found.at.next);
   return report;
 }
@@ -265,10 +270,10 @@ StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& go
     made_by(on_the_way, step_together);
     return report;
   }
-  // (A part of a step would only ask for more in less time, but that what presses comes and goes with commands: less
-  // time may leave one thing to happen.)
+  // Less time only makes larger commands necessary, so a part of a step that failed is not steered; but where contacts
+  // come and go with the commands, fewer of them do so in less time.
   const bool presses = std::any_of(state.contacts.begin(), state.contacts.end(),
-                                   [](const ContactState& own) { return !own.force.isZero(0.0); });
+                                   [](const ContactState& contact) { return !contact.force.isZero(0.0); });
   if ((!part || part->at_once || presses) && made_by(on_the_way, step_together)) return report;
   if (presses && made_by(on_the_way, search)) return report;
   made_by(nullptr,
@@ -308,8 +313,7 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   }
   StepReport report = found.at.report;
   found.tell(report);
-  report.aim = inverse.aim(model, found.at.next);
-  report.aim.short_of = found.cut_short && report.aim.outcome != Aim::Outcome::reached;
+  report.aim = aim_at(inverse, model, found.at.next, found.cut_short);
   state = std::move(found.at.next);
   return report;
 }

@@ -184,20 +184,17 @@ bool Steering::relax(const SteeringProblem& problem, Point& at) {
 bool Steering::search(const SteeringProblem& problem, Point& at, int halvings) {
   const double before = cost(at);
   double part = 1.0, best = 0.0;
-  for (int halving = 0; halving <= halvings; ++halving, part *= 0.5) {
+  for (int halving = 0; halving <= halvings && (halving == 0 || !cut_short()); ++halving, part *= 0.5) {
     trial_ = at;
     trial_.p += part * d_;
     if (problem.held.size() > 0) trial_.lambda += part * (S_ * d_);
     place(problem, trial_);
     const double gain = before - cost(trial_);
     if (best > 0.0 && !(gain > best)) break;
-    if (!(gain >= 1e-3 * part * promise_)) {
-      if (cut_short()) break;
-      continue;
-    }
+    if (!(gain >= 1e-3 * part * promise_)) continue;
     best = gain;
     std::swap(best_, trial_);
-    if (gain >= 0.5 * part * promise_ || cut_short()) break;
+    if (gain >= 0.5 * part * promise_) break;
   }
   if (!(best > 0.0)) return false;
   std::swap(at, best_);
@@ -208,7 +205,7 @@ bool Steering::descend(const SteeringProblem& problem, Point& at) {
   constexpr int kMost = 60;
   penalty_.setZero(problem.A.rows());
   place(problem, at);
-  for (int turn = 0; turn < kMost && !(turn > 0 && cut_short()); ++turn) {
+  for (int turn = 0; turn < kMost && (turn == 0 || !cut_short()); ++turn) {
     if (!piece(problem, at, Stay::anywhere)) return turn > 0;
     const double size = cost(at);
     if (!(promise_ > 1e-13 * size)) return true;
