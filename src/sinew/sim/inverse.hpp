@@ -83,11 +83,11 @@ class Inverse {
   std::vector<Bound> bounds_, binding_, dropped_;
 };
 
-/// Of a step that is halved.
+/// What is made of a step that may be halved; by itself, all of it.
 struct PartOfStep {
   const Goal* on_the_way = nullptr;  ///< it may make for another place than the goal by which it is judged
-  bool begins = false;               ///< nothing of the step is behind it
-  bool at_once = false;              ///< nothing longer was tried from here
+  bool begins = true;                ///< nothing of the step is behind it
+  bool at_once = true;               ///< nothing longer was tried from here
 };
 
 /// A step as `step` makes, whose sought motors bring the effectors nearest to their goals within their limits. With
@@ -99,7 +99,7 @@ struct PartOfStep {
 /// What came of it is in StepReport::aim. Throws std::invalid_argument where the goal has another size or is not
 /// finite, or the model has no targets.
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort = {}, const PartOfStep* part = nullptr);
+                        State& state, Effort effort = {}, const PartOfStep& part = {});
 
 /// The equilibrium under what is prescribed at `time`, as `equilibrium_step` finds it, with the commands that bring the
 /// effectors nearest to their goals within their limits: Gauss and Newton's method on the exact tangents of equilibria,

@@ -244,9 +244,9 @@ StepReport search_step(const Model& model, Memory& memory, const NewtonRules& fo
 }  // namespace
 
 StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& goal, const Command& command, double h,
-                        State& state, Effort effort, const PartOfStep* part) {
+                        State& state, Effort effort, const PartOfStep& part) {
   check(model, goal);
-  if (part && part->on_the_way) check(model, *part->on_the_way);
+  if (part.on_the_way) check(model, *part.on_the_way);
   Memory& memory = workspace.memory();
   memory.command = command;
   for (const int actuator : model.sought) memory.command.actuators[actuator] = told_to(model, state, actuator);
@@ -265,19 +265,17 @@ StepReport inverse_step(const Model& model, Workspace& workspace, const Goal& go
   };
   const auto step_together = [&] { return step_by(together, memory, memory.command, h, state); };
   const auto search = [&] { return search_step(model, memory, forward, memory.command, h, state); };
-  const Goal* const on_the_way = part ? part->on_the_way : nullptr;
   if (together.fixed || model.scene.analysis != Analysis::dynamic) {
-    made_by(on_the_way, step_together);
+    made_by(part.on_the_way, step_together);
     return report;
   }
   // Less time only makes larger commands necessary, so a part of a step that failed is not steered; but where contacts
   // come and go with the commands, fewer of them do so in less time.
   const bool presses = std::any_of(state.contacts.begin(), state.contacts.end(),
                                    [](const ContactState& contact) { return !contact.force.isZero(0.0); });
-  if ((!part || part->at_once || presses) && made_by(on_the_way, step_together)) return report;
-  if (presses && made_by(on_the_way, search)) return report;
-  made_by(nullptr,
-          [&] { return gentle_step(model, memory, forward, !part || part->begins, memory.command, h, state); });
+  if ((part.at_once || presses) && made_by(part.on_the_way, step_together)) return report;
+  if (presses && made_by(part.on_the_way, search)) return report;
+  made_by(nullptr, [&] { return gentle_step(model, memory, forward, part.begins, memory.command, h, state); });
   return report;
 }
 

@@ -137,9 +137,8 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
         on_the_way = part_of_goal(model, state, told.goal ? goal : on_the_way, part / left);
       }
       const PartOfStep made{lands ? nullptr : &on_the_way, place.parts == 0, halvings == first};
-      report = equilibrium
-                   ? inverse_equilibrium(model, workspace, goal, command, time, state)
-                   : inverse_step(model, workspace, goal, command, part, state, effort, halvings > 0 ? &made : nullptr);
+      report = equilibrium ? inverse_equilibrium(model, workspace, goal, command, time, state)
+                           : inverse_step(model, workspace, goal, command, part, state, effort, made);
     } else {
       report = equilibrium ? taken(equilibrium_step(model, workspace, command, state, time), state)
                            : step(model, workspace, command, part, state, effort);
