@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "sinew/lie/rotation.hpp"
@@ -21,6 +22,8 @@ constexpr double kDeepest = 0.25;
 constexpr double kDeepestBetween = 0.1;
 /// And that parts of rigid shapes may come to overlap in a step by which these were not near each other.
 constexpr double kDeepestMade = 0.02;
+/// And by which what presses may be apart.
+constexpr double kFarthest = 0.02;
 
 /// Both ends of a step.
 struct StepMotion {
@@ -41,12 +44,15 @@ Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
   return own;
 }
 
+/// Whether a collider is a rigid shape, of which all of the surface is known at once.
+bool is_shape(const Model& model, const Collider& own) { return is_rigid(own) && !mesh_of(model, own); }
+
 /// Distance of two parts less their thickness; below zero only where they overlap now, wherever they came from: past
 /// the rim of a triangle it has no inside, and the plane of a face ends with its shape.
 double separation(const StepMotion& motion, const ContactState& own, double t) {
   const Simplex a = placed(motion, own.a, t);
   const Model& model = motion.start.model;
-  if (a.kind == Simplex::Kind::point && is_rigid(own.b.on) && !mesh_of(model, own.b.on)) {
+  if (a.kind == Simplex::Kind::point && is_shape(model, own.b.on)) {
     const contact::Pose pose = between(motion.start.pose(own.b.on), motion.end.pose(own.b.on), t);
     const Vec3 local = pose.R.transpose() * (a.x[0] - pose.p);
     return contact::nearest(contact::point_at(local, a.radius), contact::nearest_part(shape_of(model, own.b.on), local))
@@ -61,19 +67,76 @@ double separation(const StepMotion& motion, const ContactState& own, double t) {
   return apart.norm() - a.radius - b.radius;
 }
 
-/// How deep two rigid shapes overlap on their way; 0 where they are apart.
-double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double t) {
+/// Gap of two rigid shapes on their way, if it is less than `alarm`, or else infinite; negative where they overlap.
+double gap_of_shapes(const StepMotion& motion, const PairModel& pair, double t, double alarm) {
   std::vector<contact::Meeting> meetings;
   const Model& model = motion.start.model;
   const contact::Pose a = between(motion.start.pose(pair.a), motion.end.pose(pair.a), t),
                       b = between(motion.start.pose(pair.b), motion.end.pose(pair.b), t);
-  contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, 0.0, meetings);
-  double deepest = 0.0;
+  contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, alarm, meetings);
+  double least = INFINITY;
   for (const contact::Meeting& own : meetings) {
     const contact::Pose &of_a = own.swapped ? b : a, &of_b = own.swapped ? a : b;
-    deepest = std::max(deepest, -contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b)).gap);
+    const double gap = contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b)).gap;
+    if (gap < std::min(alarm, least)) least = gap;
   }
-  return deepest;
+  return least;
+}
+
+/// How deep two rigid shapes overlap on their way; 0 where they are apart.
+double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double t) {
+  return std::max(0.0, -gap_of_shapes(motion, pair, t, 0.0));
+}
+
+/// How far a point is outside a rigid shape [m]; negative inside.
+double gap_to_shape(const Moment& now, const Collider& hard, const Vec3& point) {
+  const contact::Pose pose = now.pose(hard);
+  const Vec3 local = pose.R.transpose() * (point - pose.p);
+  return contact::nearest(contact::point_at(local, 0.0), contact::nearest_part(shape_of(now.model, hard), local)).gap;
+}
+
+/// How far a point is outside a surface [m], if that is less than `far`, or else infinite; 0 inside.
+double gap_to_surface(const Surface& surface, const Vec3& point, double far) {
+  if (contact::inside(*surface.mesh, surface.x, surface.faces, point)) return 0.0;
+  double least = INFINITY;
+  const contact::Box near(Vec3(point.array() - far), Vec3(point.array() + far));
+  surface.faces.each_near(near, [&](int number) {
+    const std::array<int, 3>& t = surface.mesh->triangles[number];
+    const std::array<Vec3, 3> x = {surface.x.col(t[0]), surface.x.col(t[1]), surface.x.col(t[2])};
+    const std::array<double, 3> weights = contact::on_triangle(point, x[0], x[1], x[2]);
+    least = std::min(least, (point - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
+  });
+  return least < far ? least : INFINITY;
+}
+
+/// By how much more a contact is open at the end of a step than its two parts have it [m], where that is more than
+/// `most`; else 0. `surfaces` of the end are fitted once they are needed.
+double beyond_its_parts(const StepMotion& motion, const ContactState& own, const Touch& touch, double most,
+                        std::optional<Surfaces>& surfaces) {
+  const Moment& end = motion.end;
+  const double gap = std::max(0.0, touch.u[0]);
+  double more = 0.0;
+  if (is_shape(end.model, own.b.on)) {
+    more = gap_to_shape(end, own.b.on, touch.point_a) - gap;
+  } else if (is_shape(end.model, own.a.on)) {
+    more = gap_to_shape(end, own.a.on, touch.point_b) - gap;
+  } else {
+    more = separation(motion, own, 1.0) - gap;
+  }
+  if (!(more > most)) return 0.0;
+  // Others parts may be near: corners of what is clipped to a face stand for the edges there.
+  const PairModel& pair = end.model.pairs[static_cast<std::size_t>(own.pair)];
+  if (are_shapes(end.model, pair)) {
+    more = std::min(more, gap_of_shapes(motion, pair, 1.0, gap + more) - gap);
+  } else if (!is_shape(end.model, pair.a) && !is_shape(end.model, pair.b)) {
+    if (!surfaces) surfaces.emplace().fit(end);
+    const Surface *of_a = surfaces->of(own.a.on), *of_b = surfaces->of(own.b.on);
+    if (!of_a && !of_b) return 0.0;  // pieces of rods end where they do
+    const double there =
+        of_b ? gap_to_surface(*of_b, touch.point_a, gap + more) : gap_to_surface(*of_a, touch.point_b, gap + more);
+    more = std::min(more, there - gap);
+  }
+  return more > most ? more : 0.0;
 }
 
 /// How far a place is outside the box of a shape along the axis where that is most; negative inside.
@@ -91,7 +154,7 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   const bool first = pair.a.kind == Kind::rod;
   const Collider &bent = first ? pair.a : pair.b, &hard = first ? pair.b : pair.a;
   const Model& model = now.model;
-  if (bent.kind != Kind::rod || !is_rigid(hard) || mesh_of(model, hard)) return 0.0;
+  if (bent.kind != Kind::rod || !is_shape(model, hard)) return 0.0;
   constexpr int kPlacesOfPiece = 4;
   const RodModel& rod = model.rods[bent.number];
   const contact::Pose pose = now.pose(hard);
@@ -196,11 +259,14 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   Passage found;
   const Model& model = context.model;
   if (model.pairs.empty()) return found;
-  // Of what is deeper than it may be, the deepest counts; what was missed is found by doing the step again, so it goes
-  // before what makes it be refused.
-  const auto note = [&found](Passage::Kind kind, std::size_t pair, double depth, double most) {
+  // Of what is deeper than it may be, the deepest counts; what doing the step again may mend goes before what makes it
+  // be refused.
+  const auto may_be_mended = [](Passage::Kind kind) {
+    return kind == Passage::Kind::missed || kind == Passage::Kind::left_behind;
+  };
+  const auto note = [&](Passage::Kind kind, std::size_t pair, double depth, double most) {
     if (!(depth > std::max(most, found.depth))) return;
-    if (kind != Passage::Kind::missed && found.kind == Passage::Kind::missed) return;
+    if (!may_be_mended(kind) && may_be_mended(found.kind)) return;
     found.kind = kind;
     found.pair = static_cast<int>(pair);
     found.depth = depth;
@@ -224,6 +290,16 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   const Moment start{model, context.start, frames, room.start};
   const Moment end{model, next, context.displacement, rods};
   const StepMotion motion{start, end};
+  std::optional<Surfaces> ended;
+  if (evaluated && room.touches.size() == next.contacts.size()) {
+    for (std::size_t i = 0; i < room.touches.size(); ++i) {
+      const ContactState& own = next.contacts[i];
+      if (!(own.force.dot(room.touches[i].nearest.normal) > 0.0)) continue;
+      const double beyond = beyond_its_parts(motion, own, room.touches[i], kFarthest * room.thin[own.pair], ended);
+      if (beyond > 0.0) found.left_behind.emplace_back(own.pair, own.part);
+      note(Passage::Kind::left_behind, static_cast<std::size_t>(own.pair), beyond, 0.0);
+    }
+  }
   std::map<std::pair<Kind, int>, double> moved;
   const auto motion_of = [&](const Collider& own) {
     const auto [place, fresh] = moved.try_emplace({own.kind, own.number}, 0.0);

@@ -8,9 +8,11 @@
 //
 //     t <- t + gap(t) / (how far the two move towards each other at most).
 //
-// A pair that meets and was no candidate makes the step be done again with a longer alarm distance; one that was a
-// candidate and still comes deeper than a quarter of the thinner of the two makes it be refused. So does a rod whose
-// curve lies that deep in a rigid shape between the places where it touches: it folds within a section.
+// A pair that meets and was no candidate makes the step be done again with a longer alarm distance. Contacts keep the
+// two parts that they were found with, and the plane of a face has no end: where one presses though the two objects are
+// apart, the step is done again without it. A pair that was a candidate and still comes deeper than a quarter of the
+// thinner of the two makes it be refused. So does a rod whose curve lies that deep in a rigid shape between the places
+// where it touches: it folds within a section.
 #pragma once
 
 #include "sinew/sim/contacts.hpp"
@@ -19,13 +21,14 @@ namespace sinew {
 
 /// What the second look found.
 struct Passage {
-  enum class Kind { none, missed, passed, folded };
+  enum class Kind { none, missed, left_behind, passed, folded };
   Kind kind = Kind::none;
   int pair = -1;         ///< of the model's, the deepest
   double depth = 0.0;    ///< [m] of its overlap on the way
   double overlap = 0.0;  ///< [m] in which two end that touch, whatever parts of them: rigid shapes, rods in these
   int overlapping = -1;  ///< of the model's pairs, the one with that
   double alarm = 0.0;    ///< [m] within which contacts are to be looked for to find all that may meet
+  std::vector<ContactKey> left_behind;  ///< contacts that press where the two are apart
 };
 
 /// Looks along the motion from the start of a step to `next`, at which `room` is `evaluated`, or not yet. `alarm` is

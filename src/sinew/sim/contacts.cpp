@@ -200,7 +200,8 @@ double alarm_distance(const StepContext& context) {
   return 2.0 * context.h * (fastest + fall) + (moves ? 2e-3 : kStillWithin) * context.model.size;
 }
 
-void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm) {
+void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm,
+                   const std::vector<ContactKey>& left_behind) {
   if (context.model.pairs.empty()) return;
   std::swap(room.start, room.now);  // (most steps start as the last one ended)
   configure_touching(context.model, rod_bases(context.model, context.start), context.start, room.start);
@@ -224,6 +225,9 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   }
   room.found.clear();
   for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
+  std::erase_if(found, [&](const ContactState& own) {
+    return std::find(left_behind.begin(), left_behind.end(), ContactKey(own.pair, own.part)) != left_behind.end();
+  });
   if (room.thin.empty()) {
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));

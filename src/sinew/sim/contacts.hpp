@@ -27,12 +27,15 @@ struct Touch {
   contact::GapHessian stiffness;
 };
 
+/// By which a contact is known again: the number of its pair in the model, and its part of that (ContactState::part).
+using ContactKey = std::pair<int, std::uint64_t>;
+
 /// What contacts of a step are evaluated with; memory of the last time.
 struct ContactRoom {
-  std::vector<rod::Configuration> start, now;        ///< of rods that touch something
-  Surfaces surfaces;                                 ///< at the start
-  std::vector<contact::Facing> facings;              ///< of each contact, as it is at the start
-  std::vector<std::pair<int, std::uint64_t>> found;  ///< pair and part of each, ascending
+  std::vector<rod::Configuration> start, now;  ///< of rods that touch something
+  Surfaces surfaces;                           ///< at the start
+  std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
+  std::vector<ContactKey> found;               ///< ascending
   std::vector<Touch> touches;
   /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
   std::vector<int> playing;
@@ -47,8 +50,9 @@ struct ContactRoom {
 };
 
 /// Finds what may touch within the step, starting from where the step starts, within `alarm` [m] of each other, or what
-/// a pair's targets ask for; forces that the iterate has are kept.
-void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm);
+/// a pair's targets ask for; forces that the iterate has are kept. Those that are `left_behind` take no part.
+void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm,
+                   const std::vector<ContactKey>& left_behind = {});
 
 /// Where the contacts of an iterate are.
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);

@@ -186,10 +186,14 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (memory.passage.kind != Passage::Kind::none && accepted(report.status)) {
       const std::string depth = three_digits(1e3 * memory.passage.depth) + " mm";
       report.status = Status::passed_through;
-      report.detail = name_of_pair(context.model, memory.passage.pair) +
-                      (memory.passage.kind == Passage::Kind::folded
-                           ? ": " + depth + " of the rod lies in it between two points; give the rod more sections"
-                           : " by " + depth + " on the way");
+      report.detail = name_of_pair(context.model, memory.passage.pair);
+      if (memory.passage.kind == Passage::Kind::folded) {
+        report.detail += ": " + depth + " of the rod lies in it between two points; give the rod more sections";
+      } else if (memory.passage.kind == Passage::Kind::left_behind) {
+        report.detail += " press on each other " + depth + " apart";
+      } else {
+        report.detail += " by " + depth + " on the way";
+      }
     }
     report.redundant |= !here.reduced().redundant.empty();
     if (accepted(report.status) && rules.evaluation == Evaluation::full) {

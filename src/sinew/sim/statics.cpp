@@ -73,7 +73,7 @@ NewtonRules whole_steps(const Model& model) {
 void begin(Memory& memory, State& guess) {
   first_guess(memory.context, guess);
   follow_points(memory.context, guess, memory.here);
-  find_contacts(memory.context, guess, memory.here.contacts(), memory.alarm);
+  find_contacts(memory.context, guess, memory.here.contacts(), memory.alarm, memory.left_behind);
 }
 
 /// Takes the motion from a state.

@@ -69,7 +69,7 @@ double begin_step(Memory& memory, Guess guess) {
   double spent = 0.0;
   if (!memory.context.model.pairs.empty()) {  // two readings of the clock cost more than to find none
     const Clock clock(spent);
-    find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm);
+    find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm, memory.left_behind);
   }
   follow_points(memory.context, iterate.state, memory.here);
   if (guess == Guess::moved_on) {  // where velocities lead does not decide which points a rod has left
@@ -133,6 +133,7 @@ double off_converged(Memory& memory, NewtonRules rules) {
   rules.fixed = false;
   rules.inverse = nullptr;
   Iterate linearised = memory.iterate;
+  memory.left_behind.clear();
   const Command command = context.command, before = command_of(model, context.start);
   const double h = context.h;
   const auto converges_in = [&](int parts) {
