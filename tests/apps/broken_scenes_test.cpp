@@ -124,7 +124,7 @@ const std::string a_box = "fixed: {box: [[-1 mm, -8 mm, -8 mm], [1 mm, 8 mm, 8 m
 const std::string a_pull =
     "pull: {rod: cable, motion: translation, displacement: {times: [0 s, 1 s], values: [0 mm, 10 mm]}}";
 
-const std::vector<Broken> table = {
+const std::vector<Broken> kBroken = {
     // The mesh.
     {"MeshMissing", scene("finger.vtk", "nope.vtk"), "", 6, "nope.vtk", "does not exist", "relative to the scene file"},
     {"MeshIsAFolder", scene("meshes/finger.vtk", "meshes"), "", 6, "meshes", "is a folder", ".vtk, .vtu or .msh"},
@@ -421,10 +421,10 @@ TEST_P(BrokenScene, IsRefusedWithFileLineValueRuleAndRemedy) {
   EXPECT_NE(lines[1].find(broken.remedy), std::string::npos) << "remedy: " << broken.remedy;
 }
 
-INSTANTIATE_TEST_SUITE_P(Check, BrokenScene, testing::ValuesIn(table),
+INSTANTIATE_TEST_SUITE_P(Check, BrokenScene, testing::ValuesIn(kBroken),
                          [](const testing::TestParamInfo<Broken>& row) { return row.param.name; });
 
-TEST(BrokenScenes, AreMany) { EXPECT_GE(table.size(), 35u); }
+TEST(BrokenScenes, AreMany) { EXPECT_GE(kBroken.size(), 35u); }
 
 /// What the rows above are broken from, and what is close to them and right.
 TEST(SoundScene, IsAccepted) {

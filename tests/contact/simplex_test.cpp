@@ -9,7 +9,7 @@
 namespace sinew::contact {
 namespace {
 
-class Random {
+class Somewhere {
  public:
   Vec3 point() { return {next_(), next_(), next_()}; }
   double number() { return next_(); }
@@ -22,7 +22,7 @@ class Random {
   } next_;
 };
 
-Simplex simplex(Simplex::Kind kind, Random& random, double radius) {
+Simplex simplex(Simplex::Kind kind, Somewhere& random, double radius) {
   Simplex own;
   own.kind = kind;
   for (Vec3& x : own.x) x = random.point();
@@ -60,7 +60,7 @@ double least_distance(const Simplex& a, const Simplex& b, int n) {
 using enum Simplex::Kind;
 
 TEST(Simplex, NearestPointsAreNearest) {
-  Random random;
+  Somewhere random;
   for (int trial = 0; trial < 200; ++trial) {
     for (const Simplex::Kind kind : {point, segment, triangle}) {
       const bool edges = trial % 2 == 1 && kind == segment;
@@ -79,7 +79,7 @@ TEST(Simplex, NearestPointsAreNearest) {
 
 /// d gap = normal . (sum of a dx_a - sum of b dx_b), for what is not a plane.
 TEST(Simplex, GapChangesAsTheNormalSays) {
-  Random random;
+  Somewhere random;
   constexpr double e = 1e-6;
   for (int trial = 0; trial < 100; ++trial) {
     for (const Simplex::Kind kind : {point, segment, triangle, plane}) {
@@ -118,7 +118,7 @@ Eigen::VectorXd gradient(const Simplex& a, const Simplex& b, const Nearest& foun
 }
 
 TEST(Simplex, SecondDerivativesOfTheGapAreDifferencesOfItsGradient) {
-  Random random;
+  Somewhere random;
   constexpr double e = 1e-6;
   std::array<int, 4> compared{};  // by the kind of facing
   for (int trial = 0; trial < 10000; ++trial) {
@@ -210,7 +210,7 @@ TEST(Simplex, ThicknessIsTakenOff) {
 }
 
 TEST(Simplex, OtherPairsAreRefused) {
-  Random random;
+  Somewhere random;
   EXPECT_THROW(nearest(simplex(triangle, random, 0), simplex(triangle, random, 0)), std::invalid_argument);
 }
 

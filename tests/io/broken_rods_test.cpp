@@ -6,7 +6,7 @@ namespace sinew::io {
 namespace {
 
 /// Breaks of `rods_scene`.
-const std::vector<Broken> cases = {
+const std::vector<Broken> kBrokenRods = {
     // What is computed.
     {"analysis: static", "analysis: statics", 2, "analysis", "statics",
      "must be one of dynamic, quasi_static, static, modal", "did you mean `static`?"},
@@ -191,8 +191,8 @@ const std::vector<Broken> cases = {
 };
 
 TEST(BrokenRods, AreRefusedWithLineFieldRuleAndRemedy) {
-  EXPECT_GE(cases.size(), 80u);
-  for (const Broken& broken : cases) expect_refused(rods_scene, broken);
+  EXPECT_GE(kBrokenRods.size(), 80u);
+  for (const Broken& broken : kBrokenRods) expect_refused(rods_scene, broken);
 }
 
 /// What is close to these faults and right.

@@ -10,7 +10,7 @@
 namespace sinew::io {
 namespace {
 
-const std::vector<Broken> cases = {
+const std::vector<Broken> kBroken = {
     // Keys.
     {"title:", "titel:", 2, "titel", "", "is not a key of a scene", "did you mean `title`?"},
     {"gravity:", "colour:", 4, "colour", "", "is not a key of a scene", "known here: title, time"},
@@ -141,8 +141,8 @@ const std::vector<Broken> cases = {
 };
 
 TEST(BrokenScene, IsRefusedWithLineFieldRuleAndRemedy) {
-  EXPECT_GE(cases.size(), 40u);
-  for (const Broken& broken : cases) expect_refused(full_scene, broken);
+  EXPECT_GE(kBroken.size(), 40u);
+  for (const Broken& broken : kBroken) expect_refused(full_scene, broken);
 }
 
 TEST(BrokenScene, WithoutBodiesOrWithoutAMapIsRefused) {

@@ -10,7 +10,7 @@
 namespace sinew::io {
 namespace {
 
-InputFault fault_of(const std::string& text) {
+InputFault document_fault(const std::string& text) {
   try {
     const Node root = parse_document(text, "a.yaml");
     ADD_FAILURE() << "read: " << show(root);
@@ -81,7 +81,7 @@ struct Broken {
 };
 
 TEST(Document, RefusesWhatIsNotASmallPlainDocument) {
-  const std::vector<Broken> cases = {
+  const std::vector<Broken> all = {
       {"", 0, "is empty"},
       {"# only a comment\n", 0, "is empty"},
       {"---\n...\n", 0, "is empty"},
@@ -123,8 +123,8 @@ TEST(Document, RefusesWhatIsNotASmallPlainDocument) {
       {repeated("- ", 40) + "x", 1, "nested more than 32 deep"},
       {std::string(largest_document + 1, 'x'), 0, "is larger than 1 MiB"},
   };
-  for (const Broken& broken : cases) {
-    const InputFault fault = fault_of(broken.text);
+  for (const Broken& broken : all) {
+    const InputFault fault = document_fault(broken.text);
     EXPECT_NE(fault.rule.find(broken.rule), std::string::npos) << show(broken.text) << "\n" << to_string(fault);
     EXPECT_EQ(fault.line, broken.line) << show(broken.text) << "\n" << to_string(fault);
   }

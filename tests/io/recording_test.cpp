@@ -85,7 +85,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-Recording parse(const std::string& bytes) {
+Recording recording_of(const std::string& bytes) {
   std::istringstream stream(bytes);
   return read_recording(stream, bytes.size(), "test");
 }
@@ -108,7 +108,7 @@ void expect_same(const RecordedStep& a, const RecordedStep& b) {
 
 std::string message_of(const std::string& bytes) {
   try {
-    parse(bytes);
+    recording_of(bytes);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -173,7 +173,7 @@ TEST_F(RecordingFile, keeps_every_whole_step_wherever_it_is_cut) {
       EXPECT_NE(message_of(cut), "(accepted)") << length;
       continue;
     }
-    const Recording recording = parse(cut);
+    const Recording recording = recording_of(cut);
     std::size_t steps = 0;
     while (steps + 1 < ends.size() && ends[steps + 1] <= length) ++steps;
     ASSERT_EQ(recording.steps.size(), steps) << length;
@@ -192,7 +192,7 @@ TEST_F(RecordingFile, detects_every_changed_byte) {
       std::string damaged = whole;
       damaged[i] = static_cast<char>(damaged[i] ^ change);
       try {
-        const Recording recording = parse(damaged);
+        const Recording recording = recording_of(damaged);
         EXPECT_TRUE(recording.torn) << i;
         ASSERT_LT(recording.steps.size(), 3u) << i;
         EXPECT_LE(recording.valid_bytes, i);
@@ -211,7 +211,7 @@ TEST_F(RecordingFile, does_not_take_a_record_out_of_its_place) {
   const std::size_t first = std::filesystem::file_size(path_);
   write(path_, 1);
   const std::string whole = bytes_of(path_);
-  const Recording recording = parse(whole + whole.substr(first));
+  const Recording recording = recording_of(whole + whole.substr(first));
   EXPECT_EQ(recording.steps.size(), 1u);
   EXPECT_TRUE(recording.torn);
 }

@@ -7,16 +7,13 @@
 #include <set>
 
 #include "full_scene.hpp"
+#include "parse.hpp"
 #include "sinew/error/input_error.hpp"
 
 namespace sinew::io {
 namespace {
 
-SceneFile parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return parse_scene(text, "finger.yaml", "scenes", overrides);
-}
-
-InputFault fault_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+InputFault scene_fault(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
     parse(text, overrides);
     ADD_FAILURE() << "accepted";
@@ -246,20 +243,20 @@ TEST(SceneFile, OverridesReplaceValues) {
 }
 
 TEST(SceneFile, FaultsInOverridesSaySo) {
-  InputFault fault = fault_of(full_scene, {"solids.finger.material.yung=500 kPa"});
+  InputFault fault = scene_fault(full_scene, {"solids.finger.material.yung=500 kPa"});
   EXPECT_EQ(fault.file, "--set");
   EXPECT_EQ(fault.line, 0);
   EXPECT_EQ(fault.path, "solids.finger.material.yung");
   EXPECT_EQ(fault.remedy,
             "did you mean `young`? known here: law, young, poisson, c10, c01, mu, alpha, bulk, viscosity, density");
-  fault = fault_of(full_scene, {"solids.finger.material.young=-5"});
+  fault = scene_fault(full_scene, {"solids.finger.material.young=-5"});
   EXPECT_EQ(to_string(fault).substr(0, to_string(fault).find('\n')),
             "--set: solids.finger.material.young = -5: must be greater than 0 Pa");
-  fault = fault_of(full_scene, {"solids.fingr.mesh=a.vtk"});
+  fault = scene_fault(full_scene, {"solids.fingr.mesh=a.vtk"});
   EXPECT_EQ(fault.remedy, "did you mean `finger`? solids holds finger, block");
-  fault = fault_of(full_scene, {"gravitation=0"});
+  fault = scene_fault(full_scene, {"gravitation=0"});
   EXPECT_EQ(fault.file, "--set");
-  fault = fault_of(full_scene, {"rods.cable.path.1=[0, 5 mm, 7 mm]"});
+  fault = scene_fault(full_scene, {"rods.cable.path.1=[0, 5 mm, 7 mm]"});
   EXPECT_EQ(fault.path, "rods.cable.path.1");
   EXPECT_EQ(fault.rule, "is the same point as the one before it");
 }

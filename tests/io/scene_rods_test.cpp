@@ -11,7 +11,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+Scene scene_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_scene(text, "rods.yaml", "scenes", overrides).scene;
 }
 
@@ -32,31 +32,32 @@ const T& at(const Named<T>& objects, std::size_t i, const std::string& name) {
 }
 
 TEST(SceneRods, ReadsTheAnalysis) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   EXPECT_EQ(scene.analysis, Analysis::statics);
   EXPECT_EQ(scene.modes, 4);
-  EXPECT_EQ(parse(full_scene).analysis, Analysis::dynamic);
-  EXPECT_EQ(parse(full_scene).modes, Scene{}.modes);
-  EXPECT_EQ(parse(full_scene, {"analysis=dynamic"}).analysis, Analysis::dynamic);
-  EXPECT_EQ(parse(full_scene, {"analysis=quasi_static"}).analysis, Analysis::quasi_static);
-  EXPECT_EQ(parse(full_scene).snap, Snap::follow);
-  EXPECT_EQ(parse(full_scene, {"snap=stop"}).snap, Snap::stop);
-  EXPECT_EQ(parse(full_scene, {"analysis=modal", "modes=12"}).analysis, Analysis::modal);
-  EXPECT_EQ(parse(full_scene, {"modes=12"}).modes, 12);
+  EXPECT_EQ(scene_of(full_scene).analysis, Analysis::dynamic);
+  EXPECT_EQ(scene_of(full_scene).modes, Scene{}.modes);
+  EXPECT_EQ(scene_of(full_scene, {"analysis=dynamic"}).analysis, Analysis::dynamic);
+  EXPECT_EQ(scene_of(full_scene, {"analysis=quasi_static"}).analysis, Analysis::quasi_static);
+  EXPECT_EQ(scene_of(full_scene).snap, Snap::follow);
+  EXPECT_EQ(scene_of(full_scene, {"snap=stop"}).snap, Snap::stop);
+  EXPECT_EQ(scene_of(full_scene, {"analysis=modal", "modes=12"}).analysis, Analysis::modal);
+  EXPECT_EQ(scene_of(full_scene, {"modes=12"}).modes, 12);
 }
 
 TEST(SceneRods, ReadsOrders) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   EXPECT_EQ(at(scene.rods, 0, "spine").order, (std::array{1, 2, 3, 4, 5, 0}));
   EXPECT_EQ(at(scene.rods, 1, "tube").order, (std::array{2, 2, 2, 0, 0, 0}));  // of the default strains
   EXPECT_EQ(at(scene.rods, 2, "blade").order, (std::array<int, 6>{}));
-  EXPECT_EQ(parse(rods_scene, {"rods.tube.strains=[shear_z, bending_y]"}).rods[1].second.order,
+  EXPECT_EQ(scene_of(rods_scene, {"rods.tube.strains=[shear_z, bending_y]"}).rods[1].second.order,
             (std::array{0, 2, 0, 0, 0, 2}));
-  EXPECT_EQ(parse(rods_scene, {"rods.spine.order={shear_y: 5}"}).rods[0].second.order, (std::array{0, 0, 0, 0, 5, 0}));
+  EXPECT_EQ(scene_of(rods_scene, {"rods.spine.order={shear_y: 5}"}).rods[0].second.order,
+            (std::array{0, 0, 0, 0, 5, 0}));
 }
 
 TEST(SceneRods, ReadsRestAndStart) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   const Rod& spine = at(scene.rods, 0, "spine");
   const auto& rest = std::get<RestStrains>(spine.rest);
   EXPECT_EQ(rest.at, (std::vector<double>{0, 0.05}));
@@ -75,24 +76,24 @@ TEST(SceneRods, ReadsRestAndStart) {
   EXPECT_FALSE(blade.start);
   EXPECT_EQ(std::get<Rest>(at(scene.rods, 3, "oval").rest), Rest::path);
   const auto held = std::get<RestStrains>(
-      parse(rods_scene, {"rods.blade.rest={at: [0, 1 cm, 2 cm], bending_z: 20}"}).rods[2].second.rest);
+      scene_of(rods_scene, {"rods.blade.rest={at: [0, 1 cm, 2 cm], bending_z: 20}"}).rods[2].second.rest);
   ASSERT_EQ(held.strains.size(), 3u);
   EXPECT_EQ(held.strains[2], strains(0, 0, 20, 0, 0, 0));
 }
 
 TEST(SceneRods, ReadsFreeMotionsOfTheBase) {
   using enum BaseAxis;
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   EXPECT_EQ(scene.rods[0].second.base, (std::vector{x, turn_z}));
   EXPECT_EQ(scene.rods[1].second.base, (std::vector{x, y, z, turn_x, turn_y, turn_z}));
   EXPECT_TRUE(scene.rods[2].second.base.empty());
   EXPECT_TRUE(scene.rods[3].second.base.empty());
-  EXPECT_EQ(parse(rods_scene, {"rods.tube.base=[turn_y, z, turn_x, y]"}).rods[1].second.base,
+  EXPECT_EQ(scene_of(rods_scene, {"rods.tube.base=[turn_y, z, turn_x, y]"}).rods[1].second.base,
             (std::vector{y, z, turn_x, turn_y}));
 }
 
 TEST(SceneRods, ReadsSectionsAndMaterials) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   const auto& tube = std::get<Tube>(at(scene.rods, 1, "tube").section);
   expect_taper(tube.outer, 0.005, 0.005);
   expect_taper(tube.inner, 0.004, 0.004);
@@ -113,7 +114,7 @@ TEST(SceneRods, ReadsSectionsAndMaterials) {
 }
 
 TEST(SceneRods, ReadsGivenStiffness) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   const Rod& rod = at(scene.rods, 4, "given");
   const auto& given = std::get<GivenSection>(rod.section);
   Eigen::Matrix<double, 6, 6> expected = strains(1, 2, 3, 4e3, 5e3, 6e3).asDiagonal();
@@ -126,13 +127,13 @@ TEST(SceneRods, ReadsGivenStiffness) {
   EXPECT_EQ(rod.material.young, 0.0);
   // Digits that another program rounded are no asymmetry, and what is read is symmetric.
   const auto rounded = std::get<GivenSection>(
-      parse(rods_scene, {"rods.given.section.stiffness.matrix.1.2=1.0000000001"}).rods[4].second.section);
+      scene_of(rods_scene, {"rods.given.section.stiffness.matrix.1.2=1.0000000001"}).rods[4].second.section);
   EXPECT_EQ(rounded.stiffness, rounded.stiffness.transpose().eval());
   EXPECT_NEAR(rounded.stiffness(1, 2), 1.0 + 0.5e-10, 1e-13);
 }
 
 TEST(SceneRods, ReadsParts) {
-  const Rod rod = parse(rods_scene).rods[0].second;
+  const Rod rod = scene_of(rods_scene).rods[0].second;
   ASSERT_EQ(rod.parts.size(), 5u);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(rod.parts[i].to, 0.02 * static_cast<double>(i + 1));
   expect_taper(std::get<Circle>(rod.parts[0].section).radius, 0.002, 0.001);
@@ -154,12 +155,12 @@ TEST(SceneRods, ReadsParts) {
 }
 
 TEST(SceneRods, ReadsCouplingsOfBothKinds) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   ASSERT_EQ(scene.couplings.size(), 5u);
   const Slide& slide = std::get<Slide>(scene.couplings[0]);
   EXPECT_EQ(slide.channel, (std::vector<Vec3>{{0.001, 0.002, 0.003}, {0.004, 0.005, 0.006}}));
   EXPECT_EQ(slide.anchor_tip, AnchorTip::pose);
-  EXPECT_TRUE(std::get<Slide>(parse(full_scene).couplings[0]).channel.empty());
+  EXPECT_TRUE(std::get<Slide>(scene_of(full_scene).couplings[0]).channel.empty());
 
   const Tie& to_frame = std::get<Tie>(scene.couplings[1]);
   EXPECT_EQ(to_frame.rod, "spine");
@@ -190,7 +191,7 @@ TEST(SceneRods, ReadsCouplingsOfBothKinds) {
 }
 
 TEST(SceneRods, ReadsAxesAndTendons) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   const Actuator& lift = at(scene.actuators, 0, "lift");
   EXPECT_EQ(lift.axis, 2);
   EXPECT_FALSE(lift.tendon);
@@ -198,7 +199,7 @@ TEST(SceneRods, ReadsAxesAndTendons) {
   const Actuator& roll = at(scene.actuators, 1, "roll");
   EXPECT_EQ(roll.axis, 1);
   EXPECT_EQ(roll.motion, Motion::rotation);
-  EXPECT_FALSE(parse(full_scene).actuators[0].second.axis);
+  EXPECT_FALSE(scene_of(full_scene).actuators[0].second.axis);
 
   const Actuator& wire = at(scene.actuators, 2, "wire");
   EXPECT_FALSE(wire.axis);
@@ -224,7 +225,7 @@ TEST(SceneRods, ReadsAxesAndTendons) {
 }
 
 TEST(SceneRods, ReadsLoads) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   ASSERT_EQ(scene.loads.size(), 4u);
   const RodLoad& weight = std::get<RodLoad>(at(scene.loads, 0, "weight"));
   EXPECT_EQ(weight.rod, "spine");
@@ -253,20 +254,21 @@ TEST(SceneRods, ReadsLoads) {
 }
 
 TEST(SceneRods, ReadsQuantitiesOfOutputs) {
-  const Scene scene = parse(rods_scene);
+  const Scene scene = scene_of(rods_scene);
   EXPECT_EQ(at(scene.outputs, 0, "tip").quantity, Quantity::position);
   EXPECT_EQ(at(scene.outputs, 1, "root").quantity, Quantity::moment);
-  EXPECT_EQ(parse(full_scene).outputs[0].second.quantity, Quantity::position);
+  EXPECT_EQ(scene_of(full_scene).outputs[0].second.quantity, Quantity::position);
   for (const auto& [word, quantity] :
        {std::pair("strain", Quantity::strain), {"force", Quantity::force}, {"stress", Quantity::stress}}) {
-    EXPECT_EQ(parse(rods_scene, {std::string("outputs.root.quantity=") + word}).outputs[1].second.quantity, quantity);
+    EXPECT_EQ(scene_of(rods_scene, {std::string("outputs.root.quantity=") + word}).outputs[1].second.quantity,
+              quantity);
   }
 }
 
 TEST(SceneRods, OverridesReachTheNewKeys) {
   const Scene scene =
-      parse(rods_scene, {"rods.spine.order.torsion=3", "rods.spine.parts.1.section={circle: {radius: 1 mm}}",
-                         "loads.weight.force.2=-2 N", "couplings.1.tie.at=20 mm", "actuators.wire.tendon.angle=0"});
+      scene_of(rods_scene, {"rods.spine.order.torsion=3", "rods.spine.parts.1.section={circle: {radius: 1 mm}}",
+                            "loads.weight.force.2=-2 N", "couplings.1.tie.at=20 mm", "actuators.wire.tendon.angle=0"});
   EXPECT_EQ(scene.rods[0].second.order[0], 3);
   EXPECT_EQ(std::get<Circle>(scene.rods[0].second.parts[1].section).radius.end, 0.001);
   EXPECT_EQ(std::get<RodLoad>(scene.loads[0].second).force.z(), -2.0);

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "full_scene.hpp"
+#include "parse.hpp"
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/document.hpp"
 #include "sinew/io/scene_file.hpp"
@@ -18,10 +19,6 @@ namespace sinew::io {
 namespace {
 
 using Json = nlohmann::json;
-
-SceneFile parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return parse_scene(text, "finger.yaml", "scenes", overrides);
-}
 
 /// A scene in which all that changes over time comes from a file, or a formula.
 class TableFile {

@@ -7,10 +7,10 @@
 namespace sinew::io {
 namespace {
 
-Scene parse() { return parse_scene(solids_scene, "scene.yaml", "").scene; }
+Scene scene_of_solids() { return parse_scene(solids_scene, "scene.yaml", "").scene; }
 
 TEST(SceneSolids, ReadsLawsAndParts) {
-  const Solid finger = parse().solids[0].second;
+  const Solid finger = scene_of_solids().solids[0].second;
   const auto& ogden = std::get<solid::Ogden>(finger.material.law);
   ASSERT_EQ(ogden.count, 3);
   EXPECT_EQ(ogden.terms[2].mu, -1e3);
@@ -29,12 +29,12 @@ TEST(SceneSolids, ReadsLawsAndParts) {
 }
 
 TEST(SceneSolids, ReadsTheOrderOfElements) {
-  EXPECT_EQ(parse().solids[0].second.order, 1);
-  EXPECT_EQ(parse().solids[2].second.order, 2);
+  EXPECT_EQ(scene_of_solids().solids[0].second.order, 1);
+  EXPECT_EQ(scene_of_solids().solids[2].second.order, 2);
 }
 
 TEST(SceneSolids, ReadsRegions) {
-  const Solid finger = parse().solids[0].second;
+  const Solid finger = scene_of_solids().solids[0].second;
   ASSERT_EQ(finger.fixed.size(), 6u);
   EXPECT_EQ(std::get<Box>(finger.fixed[0].region).in, In::world);
   EXPECT_EQ(finger.fixed[0].axes, (std::array<bool, 3>{true, false, true}));
@@ -46,7 +46,7 @@ TEST(SceneSolids, ReadsRegions) {
   EXPECT_TRUE(std::holds_alternative<WholeSurface>(finger.fixed[5].region));
   EXPECT_EQ(finger.fixed[5].axes, (std::array<bool, 3>{true, true, true}));
   EXPECT_EQ(finger.springs[5].stiffness, Vec3(1, 0, 20));
-  const Scene scene = parse();
+  const Scene scene = scene_of_solids();
   EXPECT_EQ(std::get<SolidLoad>(scene.loads[1].second).pressure, -20e3);
   EXPECT_EQ(std::get<SolidLoad>(scene.loads[3].second).force, Vec3(0, 1, 0));
   EXPECT_TRUE(std::holds_alternative<NodeNumbers>(*scene.outputs[3].second.region));

@@ -33,7 +33,7 @@ Matrix structure(int masses, const std::vector<Spring>& springs) {
   return A;
 }
 
-Eigen::MatrixXd dense(const Matrix& A) { return Eigen::MatrixXd(A).selfadjointView<Eigen::Lower>(); }
+Eigen::MatrixXd written_out(const Matrix& A) { return Eigen::MatrixXd(A).selfadjointView<Eigen::Lower>(); }
 
 /// n x n x n masses, each tied to its neighbours and weakly to the ground.
 Matrix grid(int n) {
@@ -59,9 +59,9 @@ TEST(SparseFactor, SolvesAndCountsNegativeEigenvaluesAsTheMatrixWrittenOut) {
   for (const double shift : {0.0, 2.0, 5.0}) {
     A.diagonal().array() -= shift;
     ASSERT_TRUE(factor.factor(A));
-    const Eigen::VectorXd expected = dense(A).partialPivLu().solve(b);
+    const Eigen::VectorXd expected = written_out(A).partialPivLu().solve(b);
     EXPECT_LT((factor.solve(b) - expected).norm(), 1e-10 * expected.norm());
-    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(A)).eigenvalues();
+    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(written_out(A)).eigenvalues();
     EXPECT_EQ(factor.negative(), (values.array() < 0.0).count());
     EXPECT_EQ(factor.negative() > 0, shift > 0.0);
   }
@@ -100,7 +100,7 @@ TEST(SparseFactor, GivesPartsOfTheComplianceInAnyOrder) {
     ASSERT_TRUE(factor.factor(A, H));
     const Eigen::MatrixXd W = factor.compliance();
     const double tolerance = precision == Precision::float64 ? 1e-12 : 1e-5;
-    EXPECT_LT((W - Eigen::MatrixXd(H) * dense(A).ldlt().solve(Eigen::MatrixXd(H).transpose())).norm(),
+    EXPECT_LT((W - Eigen::MatrixXd(H) * written_out(A).ldlt().solve(Eigen::MatrixXd(H).transpose())).norm(),
               tolerance * W.norm());
     Eigen::VectorXi row(kRows);  // at each place
     for (int i = 0; i < kRows; ++i) row[factor.plan().border[static_cast<std::size_t>(i)]] = i;

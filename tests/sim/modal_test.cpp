@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kLength = 1.0, kRadius = 2e-3, kYoung = 2e9, kDensity = 1200.0;
+constexpr double kRodLength = 1.0, kRadius = 2e-3, kYoung = 2e9, kDensity = 1200.0;
 const double kStiffness = kYoung * std::numbers::pi * std::pow(kRadius, 4) / 4;
 const double kLineDensity = kDensity * std::numbers::pi * kRadius * kRadius;
 
@@ -18,7 +18,7 @@ Scene slender(int sections, int order) {
   Scene scene;
   scene.analysis = Analysis::modal;
   Rod rod;
-  rod.path = {Vec3::Zero(), Vec3(kLength, 0, 0)};
+  rod.path = {Vec3::Zero(), Vec3(kRodLength, 0, 0)};
   rod.sections = sections;
   rod.strains = {Strain::bending_z};
   rod.order[2] = order;
@@ -44,7 +44,7 @@ TEST(Modal, CantileverHasTheFrequenciesOfEulerAndBernoulli) {
     const auto modes = modes_of(slender(sections, order), 3);
     ASSERT_EQ(modes.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
-      const double omega = std::pow(roots[i] / kLength, 2) * std::sqrt(kStiffness / kLineDensity);
+      const double omega = std::pow(roots[i] / kRodLength, 2) * std::sqrt(kStiffness / kLineDensity);
       EXPECT_NEAR(2 * std::numbers::pi * modes[i].frequency, omega, 0.01 * omega) << sections << " mode " << i;
     }
   }
@@ -53,7 +53,7 @@ TEST(Modal, CantileverHasTheFrequenciesOfEulerAndBernoulli) {
 TEST(Modal, TautRodRisesWithTension) {
   // Pinned-pinned with tension T: omega_n = (n pi / L)^2 sqrt(EI/m) sqrt(1 + T L^2 / (EI n^2 pi^2)) (Euler-Bernoulli).
   for (const double ratio : {0.0, 1.0, 10.0, 100.0, 1000.0}) {  // T L^2 / (pi^2 EI)
-    const double tension = ratio * std::pow(std::numbers::pi / kLength, 2) * kStiffness;
+    const double tension = ratio * std::pow(std::numbers::pi / kRodLength, 2) * kStiffness;
     Scene scene = slender(40, 0);
     Rod& rod = scene.rods[0].second;
     rod.base = {BaseAxis::turn_z};
@@ -70,7 +70,7 @@ TEST(Modal, TautRodRisesWithTension) {
     const auto modes = modes_of(scene, 3);
     ASSERT_EQ(modes.size(), 3u);
     for (int n = 1; n <= 3; ++n) {
-      const double omega = std::pow(n * std::numbers::pi / kLength, 2) * std::sqrt(kStiffness / kLineDensity) *
+      const double omega = std::pow(n * std::numbers::pi / kRodLength, 2) * std::sqrt(kStiffness / kLineDensity) *
                            std::sqrt(1.0 + ratio / (n * n));
       EXPECT_NEAR(2 * std::numbers::pi * modes[static_cast<std::size_t>(n - 1)].frequency, omega, 0.01 * omega)
           << "T L^2 / pi^2 EI = " << ratio << ", mode " << n;
@@ -80,7 +80,7 @@ TEST(Modal, TautRodRisesWithTension) {
 
 TEST(Modal, AnUnstableColumnHasANegativeFrequency) {
   // A cantilever under a dead axial load buckles at pi^2 EI / (4 L^2): there the lowest frequency passes zero.
-  const double critical = std::pow(std::numbers::pi / (2 * kLength), 2) * kStiffness;
+  const double critical = std::pow(std::numbers::pi / (2 * kRodLength), 2) * kStiffness;
   for (const double part : {0.99, 1.01}) {
     Scene scene = slender(30, 0);
     RodLoad push;
@@ -101,7 +101,7 @@ TEST(Modal, AFreeRodHasSixRigidModes) {
   for (int i = 0; i < 6; ++i)
     EXPECT_LT(std::abs(modes[static_cast<std::size_t>(i)].frequency), 1e-4 * modes[6].frequency);
   // Free-free bending: (beta L) = 4.7300.
-  const double omega = std::pow(4.7300407449 / kLength, 2) * std::sqrt(kStiffness / kLineDensity);
+  const double omega = std::pow(4.7300407449 / kRodLength, 2) * std::sqrt(kStiffness / kLineDensity);
   EXPECT_NEAR(2 * std::numbers::pi * modes[6].frequency, omega, 0.03 * omega);
 }
 

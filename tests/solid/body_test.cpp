@@ -23,18 +23,18 @@ Eigen::Matrix3Xd residual(const Body& body, const StepStart& start, const Eigen:
   return own.sum;
 }
 
-struct Named {
+struct LawUnderTest {
   std::string name;
   Law law;
 };
 
 const double kSizes[] = {0.0, 1e-8, 1e-5, 0.1};
-const OgdenTerm kRubber[] = {{6.3e5, 1.3}, {1.2e3, 5.0}, {-1e4, -2.0}};
-const Named kLaws[] = {{"corotational", corotational(500e3, 0.45)},
-                       {"saint_venant_kirchhoff", saint_venant_kirchhoff(500e3, 0.4)},
-                       {"neo_hookean", neo_hookean(500e3, 0.45)},
-                       {"mooney_rivlin", mooney_rivlin(1.2e5, 0.5e5, Poisson{0.45})},
-                       {"ogden", ogden(kRubber, Bulk{2e6})}};
+const OgdenTerm kOgden[] = {{6.3e5, 1.3}, {1.2e3, 5.0}, {-1e4, -2.0}};
+const LawUnderTest kLawsOfBodies[] = {{"corotational", corotational(500e3, 0.45)},
+                                      {"saint_venant_kirchhoff", saint_venant_kirchhoff(500e3, 0.4)},
+                                      {"neo_hookean", neo_hookean(500e3, 0.45)},
+                                      {"mooney_rivlin", mooney_rivlin(1.2e5, 0.5e5, Poisson{0.45})},
+                                      {"ogden", ogden(kOgden, Bulk{2e6})}};
 
 /// A block of few elements whose inner nodes are out of place, a face of it held.
 Body sample_body(Kind kind, const Law& law, double damping = 0.0, MassMatrix mass = MassMatrix::lumped) {
@@ -102,18 +102,18 @@ double smallest_eigenvalue(const Eigen::MatrixXd& K) {
 class EveryBody : public testing::TestWithParam<std::tuple<Kind, int>> {
  protected:
   Kind kind = std::get<0>(GetParam());
-  const Law& law = kLaws[std::get<1>(GetParam())].law;
+  const Law& law = kLawsOfBodies[std::get<1>(GetParam())].law;
   Body body = sample_body(kind, law);
   double stiffness = 2 * lame(law).mu + std::abs(lame(law).lambda);
 };
 std::string name_of(const testing::TestParamInfo<std::tuple<Kind, int>>& info) {
   const Kind kind = std::get<0>(info.param);
   const char* const of = kind == Kind::tet4 ? "tet4_" : kind == Kind::tet10 ? "tet10_" : "hex8_";
-  return of + kLaws[std::get<1>(info.param)].name;
+  return of + kLawsOfBodies[std::get<1>(info.param)].name;
 }
 INSTANTIATE_TEST_SUITE_P(Solid, EveryBody,
                          testing::Combine(testing::ValuesIn(kKinds),
-                                          testing::Range(0, static_cast<int>(std::size(kLaws)))),
+                                          testing::Range(0, static_cast<int>(std::size(kLawsOfBodies)))),
                          name_of);
 
 TEST_P(EveryBody, forces_are_the_derivative_of_the_energy_and_balance) {
@@ -308,7 +308,7 @@ TEST(Body, free_vibration_is_the_backward_euler_recurrence) {
   // In a small deformation the step solves (M (1 + a h) / h^2 + (1 + b / h) K) dx = M v0 / h - K u0.
   for (const Kind kind : kKinds) {
     const double h = 0.01, tiny = 5e-11, damping = 0.02;
-    const Body body = sample_body(kind, kLaws[0].law, damping);
+    const Body body = sample_body(kind, kLawsOfBodies[0].law, damping);
     const int n = 3 * body.nodes();
     const Eigen::MatrixXd K = dense_tangent(body, still(body), body.rest, Tangent::exact);
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);

@@ -11,7 +11,7 @@
 namespace sinew::solid {
 namespace {
 
-const Mat3 kTurn{{0.2, -1.0, 0.5}, {2.0, 0.3, 0.1}, {0.4, 0.6, -0.8}};
+const Mat3 kGradient{{0.2, -1.0, 0.5}, {2.0, 0.3, 0.1}, {0.4, 0.6, -0.8}};
 
 /// One distorted element of each kind, side by side, 4 apart along x.
 Mesh row_of_elements(double bump) {
@@ -40,7 +40,7 @@ Eigen::Matrix3Xd bumps(Eigen::Index nodes, double size) {
   });
 }
 
-Eigen::Matrix3Xd unit_tetrahedron() { return reference_shape(Kind::tet4); }
+Eigen::Matrix3Xd corners_of_tetrahedron() { return reference_shape(Kind::tet4); }
 
 TEST(Embedding, weights_sum_to_one_and_give_the_point_back_inside_and_outside) {
   for (const double bump : {0.0, 0.1}) {
@@ -61,7 +61,7 @@ TEST(Embedding, weights_sum_to_one_and_give_the_point_back_inside_and_outside) {
 
 TEST(Embedding, follows_affine_deformations_exactly_inside_and_outside) {
   const Mesh mesh = row_of_elements(0.1);
-  const auto map = [](const Vec3& x) -> Vec3 { return kTurn * x + Vec3(1, 2, 3); };
+  const auto map = [](const Vec3& x) -> Vec3 { return kGradient * x + Vec3(1, 2, 3); };
   Eigen::Matrix3Xd moved = mesh.nodes;
   for (Eigen::Index i = 0; i < moved.cols(); ++i) moved.col(i) = map(mesh.nodes.col(i));
   for (const Vec3& x : points_around(mesh, 300)) {
@@ -89,7 +89,7 @@ TEST(Embedding, finds_the_element_that_holds_the_point_in_a_mixed_mesh) {
 
 TEST(Embedding, distance_is_zero_inside_and_that_of_the_nearest_point_outside) {
   const std::vector<Cell> one = {whole_cell(Kind::tet4)};
-  const Eigen::Matrix3Xd corners = unit_tetrahedron(), ten = reference_shape(Kind::tet10);
+  const Eigen::Matrix3Xd corners = corners_of_tetrahedron(), ten = reference_shape(Kind::tet10);
   for (const auto& [rest, cells] :
        {std::pair(corners, one), std::pair(ten, std::vector<Cell>{whole_cell(Kind::tet10)})}) {
     EXPECT_EQ(embed(rest, cells, Vec3(0.2, 0.2, 0.2)).distance, 0.0);
@@ -131,7 +131,7 @@ TEST(Embedding, a_point_in_the_bulge_of_a_curved_element_is_inside) {
   }
   // Also beside another element just below, nearer than any node of the curved one.
   Eigen::Matrix3Xd both(3, 14);
-  both.leftCols(4) = (3.0 * unit_tetrahedron()).colwise() + Vec3(-0.5, -0.5, lowest - 3.01);
+  both.leftCols(4) = (3.0 * corners_of_tetrahedron()).colwise() + Vec3(-0.5, -0.5, lowest - 3.01);
   both(2, 1) = both(2, 2) = both(2, 3) = lowest - 0.01;
   both.col(3).head<2>().setConstant(-0.5);
   both.rightCols(10) = rest;
@@ -236,14 +236,14 @@ TEST(Embedding, a_point_at_a_node_has_its_weight_alone) {
   }
 }
 
-TEST(Embedding, in_no_cells_finds_none) { EXPECT_EQ(embed(unit_tetrahedron(), {}, Vec3(0, 0, 0)).element, -1); }
+TEST(Embedding, in_no_cells_finds_none) { EXPECT_EQ(embed(corners_of_tetrahedron(), {}, Vec3(0, 0, 0)).element, -1); }
 
 TEST(Gradients, of_linear_fields_are_exact_in_distorted_elements) {
   for (const Kind kind : kKinds) {
-    const Eigen::Matrix3Xd rest = distorted(kind, 0.1), x = (kTurn * rest).colwise() + Vec3(1, 2, 3);
+    const Eigen::Matrix3Xd rest = distorted(kind, 0.1), x = (kGradient * rest).colwise() + Vec3(1, 2, 3);
     for (const Vec3& xi : points_inside(kind, 10)) {
       const NodeVectors g = gradients(rest, whole_cell(kind), xi);
-      EXPECT_LT((x * g.transpose() - kTurn).norm(), 1e-13) << name(kind);
+      EXPECT_LT((x * g.transpose() - kGradient).norm(), 1e-13) << name(kind);
       EXPECT_LT(g.rowwise().sum().norm(), 1e-13) << name(kind);
     }
   }

@@ -12,7 +12,7 @@ namespace {
 
 const Vec3 kSize(3, 2, 1);
 
-Cell tet(int a, int b, int c, int d) { return {Kind::tet4, {a, b, c, d}}; }
+Cell cell(int a, int b, int c, int d) { return {Kind::tet4, {a, b, c, d}}; }
 
 /// Two tetrahedra on the triangle 0 1 2.
 Mesh two_tetrahedra() {
@@ -21,7 +21,7 @@ Mesh two_tetrahedra() {
   mesh.nodes << 0, 1, 0, 0, 0.2,  //
       0, 0, 1, 0, 0.3,            //
       0, 0, 0, 1, -1;
-  mesh.cells = {tet(0, 1, 2, 3), tet(0, 2, 1, 4)};
+  mesh.cells = {cell(0, 1, 2, 3), cell(0, 2, 1, 4)};
   return mesh;
 }
 
@@ -30,8 +30,8 @@ Mesh cube_and_roof() {
   Mesh mesh = test::block_mesh(1, 1, 1, Vec3(2, 2, 2), Kind::hex8);  // nodes 1, 3, 5, 7 at x = 2
   mesh.nodes.conservativeResize(3, 9);
   mesh.nodes.col(8) = Vec3(3, 1, 1);
-  mesh.cells.push_back(tet(1, 3, 7, 8));
-  mesh.cells.push_back(tet(1, 7, 5, 8));
+  mesh.cells.push_back(cell(1, 3, 7, 8));
+  mesh.cells.push_back(cell(1, 7, 5, 8));
   return mesh;
 }
 
@@ -146,7 +146,7 @@ TEST(Mismatch, AcceptsHexahedraApartFromTetrahedraOrTouchingAtAnEdge) {
   mesh.nodes.conservativeResize(3, 10);
   mesh.nodes.col(9) = Vec3(3, 0, 3);
   mesh.cells.resize(1);
-  mesh.cells.push_back(tet(5, 7, 9, 8));
+  mesh.cells.push_back(cell(5, 7, 9, 8));
   EXPECT_FALSE(mismatched_faces(mesh.cells));
 }
 

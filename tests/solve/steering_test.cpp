@@ -12,9 +12,9 @@ namespace {
 
 /// Random effectors, limits and contacts of a body with a compliance that is symmetric as a whole: what commands do to
 /// contacts and what contacts do to effectors come from the same matrix.
-class Random {
+class RandomProblems {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
+  explicit RandomProblems(unsigned seed) : engine_(seed) {}
   double number() { return normal_(engine_); }
   Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index cols) {
     Eigen::MatrixXd M(rows, cols);
@@ -70,7 +70,7 @@ void expect_consistent(const SteeringProblem& problem, const Steering& found) {
 }
 
 TEST(Steering, IsTheBestOfAllCommandsWithoutFriction) {
-  Random random(1);
+  RandomProblems random(1);
   Steering steering;
   int certain = 0;
   for (int trial = 0; trial < 60; ++trial) {
@@ -90,7 +90,7 @@ TEST(Steering, IsTheBestOfAllCommandsWithoutFriction) {
 
 /// With friction: none of the commands around does better.
 TEST(Steering, IsTheBestAroundWithFriction) {
-  Random random(2);
+  RandomProblems random(2);
   Steering steering;
   for (int trial = 0; trial < 100; ++trial) {
     const SteeringProblem problem = random.problem(2, 1 + trial % 6, 0.4);
@@ -109,7 +109,7 @@ TEST(Steering, IsTheBestAroundWithFriction) {
 }
 
 TEST(Steering, ReactionIsTheDifferenceOfForces) {
-  Random random(3);
+  RandomProblems random(3);
   Steering steering;
   for (int trial = 0; trial < 50; ++trial) {
     const SteeringProblem problem = random.problem(2, 4, trial % 2 == 0 ? 0.5 : 0.0);
@@ -174,7 +174,7 @@ TEST(Steering, BreaksTheLessFirm) {
 /// Hundreds of contacts of what moves in a dozen ways, solved anew for each p, are more work than a step is worth: what
 /// was found by then stands, is no worse than nothing and is not said to be the best.
 TEST(Steering, EndsAtALimitOfWork) {
-  Random random(5);
+  RandomProblems random(5);
   Steering steering;
   const SteeringProblem few = random.problem(2, 8, 0.4);
   ASSERT_TRUE(steering.solve(few));

@@ -105,19 +105,19 @@ LastStep last_step(const Scene& scene) {
 
 /// A body rolls along x. What it is told to be off by is what it is: the way that it turned beside the way it came.
 void tells_how_far_rolling_is_off(const BodyShape& shape, const Vec3& rotate) {
-  constexpr double kRadius = 10 * mm, kSpin = 20.0;
+  constexpr double kWheel = 10 * mm, kSpin = 20.0;
   for (const double angle : {0.1, 0.2, 0.3, 0.6}) {
     Scene scene = on_floor(angle / kSpin, 4 * angle / kSpin, 0.8);
-    RigidBody body = box_of(kRadius, 0.1, Vec3(0, 0, kRadius));
+    RigidBody body = box_of(kWheel, 0.1, Vec3(0, 0, kWheel));
     body.shape = shape;
     body.pose.rotate = rotate;
-    body.velocity = Vec3(kSpin * kRadius, 0, 0);
+    body.velocity = Vec3(kSpin * kWheel, 0, 0);
     body.spin = Vec3(0, kSpin, 0);
     scene.bodies.emplace_back("wheel", body);
     const LastStep last = last_step(scene);
     const rigid::Motion &from = last.before.bodies[0], &to = last.after.bodies[0];
     const double turned = lie::log(to.R * from.R.transpose()).y(), came = to.p.x() - from.p.x();
-    const double off = 1.0 - came / (kRadius * turned);
+    const double off = 1.0 - came / (kWheel * turned);
     const Warning* told = find_warning(last.warnings, "coarse_rolling");
     EXPECT_NEAR(turned, angle, 0.3 * angle);
     ASSERT_EQ(told != nullptr, off > 0.01) << angle << " rad a step, off by " << off;

@@ -131,11 +131,11 @@ double ByteCursor::real(NumberType type, Encoding encoding, std::string_view wha
   const std::string_view text = word(what);
   double value = 0.0;
   if (!parse(text, value)) {
-    fail(quoted(text), fmt::format("{} must be a number in the range of double precision", what),
+    fail(in_quotes(text), fmt::format("{} must be a number in the range of double precision", what),
          "write it in decimal digits, for example 12.5 or 1.25e1");
   }
   if (!std::isfinite(value)) {
-    fail(quoted(text), fmt::format("{} must be finite", what),
+    fail(in_quotes(text), fmt::format("{} must be finite", what),
          "find out in the program that wrote the mesh where it "
          "comes from");
   }
@@ -152,7 +152,7 @@ std::int64_t ByteCursor::integer(NumberType type, Encoding encoding, std::string
   const std::string_view text = word(what);
   std::int64_t value = 0;
   if (!parse(text, value)) {
-    fail(quoted(text), fmt::format("{} must be a whole number", what), "write it in decimal digits, for example 12");
+    fail(in_quotes(text), fmt::format("{} must be a whole number", what), "write it in decimal digits, for example 12");
   }
   return value;
 }
@@ -210,7 +210,7 @@ void ByteCursor::fail_at(std::size_t position, const std::string& value, const s
   throw InputError({.file = file_, .line = line, .path = "", .value = value, .rule = rule, .remedy = remedy});
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "\"";
   for (const char c : text.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';

@@ -83,7 +83,7 @@ class ByteCursor {
 };
 
 /// A piece of a file for a message: quoted, without control characters, cut to a readable length.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 

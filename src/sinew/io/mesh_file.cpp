@@ -217,7 +217,7 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
          "is neither a text STL file nor as long as a binary one is, 84 bytes and 50 for each triangle",
          "the file is cut short: export the part again");
   } else {
-    fail(name, quoted(first),
+    fail(name, in_quotes(first),
          "must begin with \"# vtk DataFile Version\", \"<VTKFile\" or \"$MeshFormat\", or be an STL or OBJ file",
          formats);
   }

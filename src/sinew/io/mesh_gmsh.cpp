@@ -30,7 +30,7 @@ class Gmsh {
     while (!(nodes && elements) && !cursor_.done()) {
       const std::string_view name = cursor_.word("a section");
       if (!name.starts_with("$")) {
-        cursor_.fail(quoted(name), "a section must begin with its name, as $Nodes",
+        cursor_.fail(in_quotes(name), "a section must begin with its name, as $Nodes",
                      "a count before this place is wrong, or the file is damaged: write the mesh again with Gmsh");
       }
       if (name == "$MeshFormat") {
@@ -39,13 +39,13 @@ class Gmsh {
       } else if (name == "$Nodes" || name == "$Elements") {
         bool& seen = name == "$Nodes" ? nodes : elements;
         if (!format || seen) {
-          cursor_.fail(quoted(name), "must come once, after $MeshFormat", "write the mesh again with Gmsh");
+          cursor_.fail(in_quotes(name), "must come once, after $MeshFormat", "write the mesh again with Gmsh");
         }
         seen = true;
         cursor_.line();
         read_content(name == "$Nodes");
       } else if (name == "$PhysicalNames" || (name == "$Entities" && version_4_)) {
-        if (elements) cursor_.fail(quoted(name), "must come before $Elements", "write the mesh again with Gmsh");
+        if (elements) cursor_.fail(in_quotes(name), "must come before $Elements", "write the mesh again with Gmsh");
         cursor_.line();
         name == "$Entities" ? read_entities_4(cursor_, encoding_, content_) : read_names(cursor_, content_);
       } else {
@@ -72,7 +72,7 @@ class Gmsh {
     const std::string_view version = cursor_.word("the version");
     version_4_ = version == "4.1";
     if (!version_4_ && version != "2.2" && version != "2.1" && version != "2" && version != "2.0") {
-      cursor_.fail(quoted(version), "the version of a Gmsh file must be 2.2 or 4.1",
+      cursor_.fail(in_quotes(version), "the version of a Gmsh file must be 2.2 or 4.1",
                    "save it again: `gmsh -save -format msh41 in.msh -o out.msh`");
     }
     const std::int64_t binary = cursor_.integer(NumberType::i32, {}, "0 (text) or 1 (binary)");
@@ -101,7 +101,7 @@ class Gmsh {
     const std::string end = "$End" + std::string(section.substr(1));
     const std::string_view word = cursor_.word(end);
     if (word != end) {
-      cursor_.fail(quoted(word), fmt::format("{} must stand here", end),
+      cursor_.fail(in_quotes(word), fmt::format("{} must stand here", end),
                    "a count in the section is wrong: write the mesh again with Gmsh");
     }
   }
@@ -109,7 +109,7 @@ class Gmsh {
   void skip(std::string_view section) {
     const std::string end = "$End" + std::string(section.substr(1));
     if (!cursor_.skip_past(end)) {
-      cursor_.fail(quoted(section), fmt::format("the section must end with {}", end),
+      cursor_.fail(in_quotes(section), fmt::format("the section must end with {}", end),
                    "the file is cut short: write the mesh again with Gmsh");
     }
   }

@@ -146,7 +146,7 @@ void read_names(ByteCursor& cursor, GmshContent& content) {
     const std::string_view rest = cursor.line();
     const std::size_t open = rest.find('"'), close = rest.rfind('"');
     if (open == close) {
-      cursor.fail(quoted(rest), "the name of a physical group must stand in quotation marks behind its number",
+      cursor.fail(in_quotes(rest), "the name of a physical group must stand in quotation marks behind its number",
                   "write it as in: 2 7 \"wall\"");
     }
     const std::string_view name = rest.substr(open + 1, close - open - 1);

@@ -43,7 +43,7 @@ class LegacyVtk {
     constexpr std::string_view start = "# vtk DataFile Version ";
     const std::string_view version = first.substr(std::min(start.size(), first.size()));
     if (!first.starts_with(start) || version.empty() || version[0] < '2' || version[0] > '5') {
-      cursor_.fail(quoted(first), "the first line must be \"# vtk DataFile Version x.y\" with x from 2 to 5",
+      cursor_.fail(in_quotes(first), "the first line must be \"# vtk DataFile Version x.y\" with x from 2 to 5",
                    "write the mesh as legacy VTK of such a version, for example 4.2");
     }
     major_ = version[0] - '0';
@@ -51,12 +51,12 @@ class LegacyVtk {
     const std::string_view coding = cursor_.word("ASCII or BINARY");
     encoding_ = {.text = equal_ignoring_case(coding, "ASCII"), .order = std::endian::big};
     if (!encoding_.text && !equal_ignoring_case(coding, "BINARY")) {
-      cursor_.fail(quoted(coding), "the third line must be ASCII or BINARY", "write the mesh again as legacy VTK");
+      cursor_.fail(in_quotes(coding), "the third line must be ASCII or BINARY", "write the mesh again as legacy VTK");
     }
     expect("DATASET");
     const std::string_view dataset = cursor_.word("the kind of the dataset");
     if (!equal_ignoring_case(dataset, "UNSTRUCTURED_GRID")) {
-      cursor_.fail(quoted(dataset), "the dataset must be an UNSTRUCTURED_GRID",
+      cursor_.fail(in_quotes(dataset), "the dataset must be an UNSTRUCTURED_GRID",
                    "a surface or an image has no volume: mesh its volume first, for example with Gmsh");
     }
     if (!encoding_.text) cursor_.fix_line(0);
@@ -65,7 +65,7 @@ class LegacyVtk {
   void expect(std::string_view keyword) {
     const std::string_view word = cursor_.word(keyword);
     if (!equal_ignoring_case(word, keyword)) {
-      cursor_.fail(quoted(word), fmt::format("{} must stand here", keyword), "write the mesh again as legacy VTK");
+      cursor_.fail(in_quotes(word), fmt::format("{} must stand here", keyword), "write the mesh again as legacy VTK");
     }
   }
 
@@ -99,7 +99,7 @@ class LegacyVtk {
     } else if (is("FIELD")) {
       skip_field();
     } else {
-      cursor_.fail(quoted(keyword), "a section must begin with POINTS, CELLS, CELL_TYPES, FIELD or METADATA",
+      cursor_.fail(in_quotes(keyword), "a section must begin with POINTS, CELLS, CELL_TYPES, FIELD or METADATA",
                    "a count before this place is wrong, or the file is damaged: write the mesh again");
     }
     return true;
@@ -109,7 +109,8 @@ class LegacyVtk {
     const std::string_view word = cursor_.word("the type of the numbers");
     const std::optional<NumberType> type = legacy_number_type(word);
     if (!type) {
-      cursor_.fail(quoted(word), "the type of the numbers must be one of float, double, int, long, vtktypeint64, ...",
+      cursor_.fail(in_quotes(word),
+                   "the type of the numbers must be one of float, double, int, long, vtktypeint64, ...",
                    "write the mesh again as legacy VTK");
     }
     return *type;

@@ -75,7 +75,8 @@ Eigen::Vector3d vector(ByteCursor& cursor, Encoding encoding, std::string_view w
 void expect(ByteCursor& cursor, std::string_view wanted) {
   const std::string_view word = cursor.word(wanted);
   if (!equal_ignoring_case(word, wanted))
-    cursor.fail(quoted(word), fmt::format("here `{}` must stand", wanted), "export the part again, best as binary STL");
+    cursor.fail(in_quotes(word), fmt::format("here `{}` must stand", wanted),
+                "export the part again, best as binary STL");
 }
 
 void read_text_facet(ByteCursor& cursor, Surface& surface) {
@@ -101,7 +102,7 @@ int corner_of(ByteCursor& cursor, std::string_view token, std::size_t count) {
   const auto points = static_cast<long long>(count);
   if (error != std::errc() || end != digits.data() + digits.size() || number == 0 || number < -points ||
       number > points)
-    cursor.fail(quoted(token), fmt::format("a corner must be one of the {} points before it", count),
+    cursor.fail(in_quotes(token), fmt::format("a corner must be one of the {} points before it", count),
                 "export the part again");
   return static_cast<int>(number > 0 ? number - 1 : points + number);
 }
@@ -165,7 +166,8 @@ solid::Mesh parse_text_stl(std::string_view bytes, const std::string& file) {
     } else if (equal_ignoring_case(word, "facet")) {
       read_text_facet(cursor, surface);
     } else {
-      cursor.fail(quoted(word), "here `facet` or `endsolid` must stand", "export the part again, best as binary STL");
+      cursor.fail(in_quotes(word), "here `facet` or `endsolid` must stand",
+                  "export the part again, best as binary STL");
     }
   }
   return std::move(surface).mesh();
@@ -187,7 +189,7 @@ solid::Mesh parse_obj(std::string_view bytes, const std::string& file) {
     } else if (passed_over(word)) {
       cursor.line();
     } else {
-      cursor.fail(quoted(word), "is no line of a surface of polygons", "export the part again, as polygons");
+      cursor.fail(in_quotes(word), "is no line of a surface of polygons", "export the part again, as polygons");
     }
   }
   return std::move(surface).mesh();

@@ -18,7 +18,7 @@
 namespace sinew::io {
 namespace {
 
-constexpr const char* write_again = "write the mesh again as VTU";
+constexpr const char* write_as_vtu = "write the mesh again as VTU";
 
 class Vtu {
  public:
@@ -47,13 +47,14 @@ class Vtu {
     const std::string_view attributes = bytes_.substr(tag, close == std::string_view::npos ? close : close - tag);
     const std::size_t start = close == std::string_view::npos ? close : bytes_.find('_', close);
     if (start == std::string_view::npos) {
-      fail(line_at(tag), "", "AppendedData must have a start tag and an underscore before its bytes", write_again);
+      fail(line_at(tag), "", "AppendedData must have a start tag and an underscore before its bytes", write_as_vtu);
     }
     coding_.appended = bytes_.substr(start + 1);
     const bool raw = attributes.find("\"raw\"") != std::string_view::npos;
     coding_.appended_base64 = attributes.find("\"base64\"") != std::string_view::npos;
     if (!raw && !coding_.appended_base64) {
-      fail(line_at(tag), quoted(attributes), "the encoding of AppendedData must be \"raw\" or \"base64\"", write_again);
+      fail(line_at(tag), in_quotes(attributes), "the encoding of AppendedData must be \"raw\" or \"base64\"",
+           write_as_vtu);
     }
     xml_ += "</VTKFile>";
   }
@@ -64,7 +65,7 @@ class Vtu {
     if (!result) {
       const std::size_t end =
           std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), xml_.size());
-      fail(line_at(end), result.description(), "the file must be well-formed XML", write_again);
+      fail(line_at(end), result.description(), "the file must be well-formed XML", write_as_vtu);
     }
   }
 
@@ -73,7 +74,7 @@ class Vtu {
       return std::string(root.attribute(name).as_string(otherwise));
     };
     const auto refuse = [&](const char* name, const std::string& value, const char* rule, const char* remedy) {
-      fail(line_of(root), fmt::format("{}={}", name, quoted(value)), rule, remedy);
+      fail(line_of(root), fmt::format("{}={}", name, in_quotes(value)), rule, remedy);
     };
     const std::string type = attribute("type", "");
     if (type != "UnstructuredGrid") {
@@ -82,12 +83,12 @@ class Vtu {
     }
     const std::string order = attribute("byte_order", "LittleEndian");
     if (order != "LittleEndian" && order != "BigEndian") {
-      refuse("byte_order", order, "byte_order must be LittleEndian or BigEndian", write_again);
+      refuse("byte_order", order, "byte_order must be LittleEndian or BigEndian", write_as_vtu);
     }
     coding_.order = order == "BigEndian" ? std::endian::big : std::endian::little;
     const std::string header = attribute("header_type", "UInt32");
     if (header != "UInt32" && header != "UInt64") {
-      refuse("header_type", header, "header_type must be UInt32 or UInt64", write_again);
+      refuse("header_type", header, "header_type must be UInt32 or UInt64", write_as_vtu);
     }
     coding_.header = header == "UInt64" ? NumberType::u64 : NumberType::u32;
     coding_.compressor = attribute("compressor", "");
@@ -100,8 +101,8 @@ class Vtu {
     if (points > 0) {
       const pugi::xml_node element = child(child(piece, "Points"), "DataArray");
       if (element.attribute("NumberOfComponents").as_int(0) != 3) {
-        fail(line_of(element), quoted(element.attribute("NumberOfComponents").as_string()),
-             "NumberOfComponents of Points must be 3", write_again);
+        fail(line_of(element), in_quotes(element.attribute("NumberOfComponents").as_string()),
+             "NumberOfComponents of Points must be 3", write_as_vtu);
       }
       const std::vector<double> read = array(element).reals(3 * points);
       coordinates_.insert(coordinates_.end(), read.begin(), read.end());
@@ -115,7 +116,7 @@ class Vtu {
     const std::int64_t entries = list.ends.back();
     if (entries < 0 || entries > std::numeric_limits<int>::max()) {
       ends.fail(std::to_string(entries), "the last offset is the number of node numbers, from 0 to 2147483647",
-                write_again);
+                write_as_vtu);
     }
     const VtuArray connectivity = named(parent, "connectivity");
     list.connectivity = connectivity.integers(static_cast<std::size_t>(entries));
@@ -156,7 +157,7 @@ class Vtu {
   pugi::xml_node child(const pugi::xml_node& parent, const char* name) {
     const pugi::xml_node found = parent.child(name);
     if (!found) {
-      fail(line_of(parent), "", fmt::format("{} must have an element {}", parent.name(), name), write_again);
+      fail(line_of(parent), "", fmt::format("{} must have an element {}", parent.name(), name), write_as_vtu);
     }
     return found;
   }
@@ -164,7 +165,7 @@ class Vtu {
   VtuArray named(const pugi::xml_node& parent, const char* name) {
     const pugi::xml_node found = parent.find_child_by_attribute("DataArray", "Name", name);
     if (!found) {
-      fail(line_of(parent), "", fmt::format("{} must have a DataArray named {}", parent.name(), name), write_again);
+      fail(line_of(parent), "", fmt::format("{} must have a DataArray named {}", parent.name(), name), write_as_vtu);
     }
     return array(found);
   }

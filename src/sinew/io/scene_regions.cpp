@@ -7,7 +7,7 @@ namespace {
 
 using enum Need;
 
-Type<Region> box() {
+Type<Region> within_box() {
   const auto check = [](const std::vector<Vec3>& corners, const At& at) {
     for (int axis = 0; axis < 3; ++axis) {
       if (corners[0][axis] <= corners[1][axis]) continue;
@@ -26,7 +26,7 @@ Type<Region> box() {
           corners.schema};
 }
 
-Type<Region> sphere() {
+Type<Region> within_sphere() {
   const Type<Sphere> type = map<Sphere>({"a sphere",
                                          {field<Sphere>({"center", required, "its centre [m]", "[0, 0, 10 mm]"},
                                                         &Sphere::center, vec3(Dimension::length)),
@@ -35,7 +35,7 @@ Type<Region> sphere() {
   return {[=](const At& at) -> Region { return type.read(at); }, type.schema};
 }
 
-Type<Region> plane() {
+Type<Region> on_plane() {
   const Type<Plane> type = map<Plane>(
       {"a plane",
        {field<Plane>({"point", required, "a point of it [m]", "[0, 0, 0]"}, &Plane::point, vec3(Dimension::length)),
@@ -71,9 +71,10 @@ Type<Region> whole_surface() {
 
 const std::vector<RegionKey>& region_keys() {
   static const std::vector<RegionKey> keys = {
-      {{"box", optional, "the lower and the upper corner of a box [m]", "[[0, 0, 0], [5 mm, 1 cm, 1 cm]]"}, box()},
-      {{"sphere", optional, "a sphere", "{center: [0, 0, 10 mm], radius: 5 mm}"}, sphere()},
-      {{"plane", optional, "a plane, with what lies on it", "{point: [0, 0, 0], normal: [1, 0, 0]}"}, plane()},
+      {{"box", optional, "the lower and the upper corner of a box [m]", "[[0, 0, 0], [5 mm, 1 cm, 1 cm]]"},
+       within_box()},
+      {{"sphere", optional, "a sphere", "{center: [0, 0, 10 mm], radius: 5 mm}"}, within_sphere()},
+      {{"plane", optional, "a plane, with what lies on it", "{point: [0, 0, 0], normal: [1, 0, 0]}"}, on_plane()},
       {{"nodes", optional, "node numbers of the mesh file, from 0", "[0, 3, 17]"}, nodes()},
       {{"group", optional, "what the mesh file has given this name: a physical group, or a cell tag", "base"}, group()},
       {{"surface", optional, "true: the whole boundary", "true"}, whole_surface()}};

@@ -39,7 +39,7 @@ Type<Spring> spring() {
                       {exactly_one(region_names())}});
 }
 
-Type<SolidPart> part() {
+Type<SolidPart> solid_part() {
   return map<SolidPart>({"a part of a solid",
                          together<SolidPart>(region_fields<SolidPart>(&SolidPart::region),
                                              {field<SolidPart>({"material", required, "what it is made of",
@@ -102,7 +102,7 @@ Type<Solid> solid() {
                 {{"lumped", solid::MassMatrix::lumped}, {"consistent", solid::MassMatrix::consistent}})),
         field<Solid>({"parts", optional, "regions of another material",
                       "[{group: bone, material: {young: 1 GPa, poisson: 0.3}}]"},
-                     &Solid::parts, list<SolidPart>("parts", part(), {1})),
+                     &Solid::parts, list<SolidPart>("parts", solid_part(), {1})),
         field<Solid>({"fixed", optional, "a region, or a list of regions, whose nodes are held",
                       "{box: [[0, 0, 0], [5 mm, 1 cm, 1 cm]]}"},
                      &Solid::fixed, one_or_more<Held>("regions", held())),

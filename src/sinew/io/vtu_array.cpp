@@ -42,7 +42,7 @@ VtuArray::VtuArray(const pugi::xml_node& element, const VtuCoding& coding, std::
   const std::string type = element.attribute("type").as_string();
   const std::optional<NumberType> known = number_type(type);
   if (!known) {
-    fail(quoted(type), "the type of a DataArray must be Int8, UInt8, ..., Int64, UInt64, Float32 or Float64",
+    fail(in_quotes(type), "the type of a DataArray must be Int8, UInt8, ..., Int64, UInt64, Float32 or Float64",
          "write the mesh again as VTU");
   }
   type_ = *known;
@@ -50,12 +50,12 @@ VtuArray::VtuArray(const pugi::xml_node& element, const VtuCoding& coding, std::
   text_ = format == "ascii";
   base64_ = format == "binary" || (format == "appended" && coding.appended_base64);
   if (!text_ && !coding.compressor.empty() && coding.compressor != "vtkZLibDataCompressor") {
-    fail(quoted(coding.compressor), "the compressor must be vtkZLibDataCompressor or none",
+    fail(in_quotes(coding.compressor), "the compressor must be vtkZLibDataCompressor or none",
          "write the mesh with zlib compression or without compression");
   }
   if (format != "appended") {
     if (!text_ && !base64_) {
-      fail(quoted(format), "the format of a DataArray must be ascii, binary or appended",
+      fail(in_quotes(format), "the format of a DataArray must be ascii, binary or appended",
            "write the mesh again as VTU");
     }
     return;
@@ -95,7 +95,7 @@ std::vector<T> VtuArray::read(std::size_t count, Read number) const {
   values.reserve(count);
   for (std::size_t i = 0; i < count; ++i) values.push_back(number(cursor, encoding));
   if (text_ && !cursor.done()) {
-    cursor.fail(quoted(cursor.word("")), fmt::format("{} must end after {} numbers", name_, count),
+    cursor.fail(in_quotes(cursor.word("")), fmt::format("{} must end after {} numbers", name_, count),
                 "the counts of the piece do not fit the data: write the mesh again");
   }
   return values;

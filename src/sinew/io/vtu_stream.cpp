@@ -75,7 +75,7 @@ void VtuStream::decode_four(std::string_view what) {
       value = 0;
     }
     if (value < 0 || (c != '=' && padding > 0) || padding > 2) {
-      cursor_.fail(quoted(std::string_view(&c, 1)), "must be a digit of base64 (A-Z a-z 0-9 + / and = at the end)",
+      cursor_.fail(in_quotes(std::string_view(&c, 1)), "must be a digit of base64 (A-Z a-z 0-9 + / and = at the end)",
                    write_again);
     }
   }
