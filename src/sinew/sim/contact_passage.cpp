@@ -124,7 +124,7 @@ double beyond_its_parts(const StepMotion& motion, const ContactState& own, const
     more = separation(motion, own, 1.0) - gap;
   }
   if (!(more > most)) return 0.0;
-  // Others parts may be near: corners of what is clipped to a face stand for the edges there.
+  // Other parts may be near: corners of what is clipped to a face stand for the edges there.
   const PairModel& pair = end.model.pairs[static_cast<std::size_t>(own.pair)];
   if (are_shapes(end.model, pair)) {
     more = std::min(more, gap_of_shapes(motion, pair, 1.0, gap + more) - gap);
