@@ -47,6 +47,12 @@ Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
 /// Whether a collider is a rigid shape, of which all of the surface is known at once.
 bool is_shape(const Model& model, const Collider& own) { return is_rigid(own) && !mesh_of(model, own); }
 
+/// How far a point, in the axes of a rigid shape, with what is within `radius` of it is outside that [m]; negative
+/// inside.
+double gap_to_shape(const contact::Shape& shape, const Vec3& local, double radius) {
+  return contact::nearest(contact::point_at(local, radius), contact::nearest_part(shape, local)).gap;
+}
+
 /// Distance of two parts less their thickness; below zero only where they overlap now, wherever they came from: past
 /// the rim of a triangle it has no inside, and the plane of a face ends with its shape.
 double separation(const StepMotion& motion, const ContactState& own, double t) {
@@ -54,9 +60,7 @@ double separation(const StepMotion& motion, const ContactState& own, double t) {
   const Model& model = motion.start.model;
   if (a.kind == Simplex::Kind::point && is_shape(model, own.b.on)) {
     const contact::Pose pose = between(motion.start.pose(own.b.on), motion.end.pose(own.b.on), t);
-    const Vec3 local = pose.R.transpose() * (a.x[0] - pose.p);
-    return contact::nearest(contact::point_at(local, a.radius), contact::nearest_part(shape_of(model, own.b.on), local))
-        .gap;
+    return gap_to_shape(shape_of(model, own.b.on), pose.R.transpose() * (a.x[0] - pose.p), a.radius);
   }
   const Simplex b = placed(motion, own.b, t);
   const contact::Nearest found = contact::nearest(a, b);
@@ -88,13 +92,6 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
   return std::max(0.0, -gap_of_shapes(motion, pair, t, 0.0));
 }
 
-/// How far a point is outside a rigid shape [m]; negative inside.
-double gap_to_shape(const Moment& now, const Collider& hard, const Vec3& point) {
-  const contact::Pose pose = now.pose(hard);
-  const Vec3 local = pose.R.transpose() * (point - pose.p);
-  return contact::nearest(contact::point_at(local, 0.0), contact::nearest_part(shape_of(now.model, hard), local)).gap;
-}
-
 /// How far a point is outside a surface [m], if that is less than `far`, or else infinite; 0 inside.
 double gap_to_surface(const Surface& surface, const Vec3& point, double far) {
   if (contact::inside(*surface.mesh, surface.x, surface.faces, point)) return 0.0;
@@ -115,11 +112,15 @@ double beyond_its_parts(const StepMotion& motion, const ContactState& own, const
                         std::optional<Surfaces>& surfaces) {
   const Moment& end = motion.end;
   const double gap = std::max(0.0, touch.u[0]);
+  const auto gap_to = [&end](const Collider& hard, const Vec3& point) {
+    const contact::Pose pose = end.pose(hard);
+    return gap_to_shape(shape_of(end.model, hard), pose.R.transpose() * (point - pose.p), 0.0);
+  };
   double more = 0.0;
   if (is_shape(end.model, own.b.on)) {
-    more = gap_to_shape(end, own.b.on, touch.point_a) - gap;
+    more = gap_to(own.b.on, touch.point_a) - gap;
   } else if (is_shape(end.model, own.a.on)) {
-    more = gap_to_shape(end, own.a.on, touch.point_b) - gap;
+    more = gap_to(own.a.on, touch.point_b) - gap;
   } else {
     more = separation(motion, own, 1.0) - gap;
   }
@@ -163,7 +164,7 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   const rod::Configuration& shape = now.rods[bent.number];
   const auto local = [&](double s) -> Vec3 { return pose.R.transpose() * (rod::position(shape, s) - pose.p); };
   const auto depth = [&](const Vec3& place, double radius) {
-    return -contact::nearest(contact::point_at(place, radius), contact::nearest_part(shape_of(model, hard), place)).gap;
+    return -gap_to_shape(shape_of(model, hard), place, radius);
   };
   int section = -1;
   double away = 0.0;  // at least so far outside, along one axis of the shape's box, is the axis of that section
