@@ -44,9 +44,6 @@ Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
   return own;
 }
 
-/// Whether a collider is a rigid shape, of which all of the surface is known at once.
-bool is_shape(const Model& model, const Collider& own) { return is_rigid(own) && !mesh_of(model, own); }
-
 /// How far a point, in the axes of a rigid shape, with what is within `radius` of it is outside that [m]; negative
 /// inside.
 double gap_to_shape(const contact::Shape& shape, const Vec3& local, double radius) {

@@ -125,8 +125,10 @@ std::vector<Placement> frames_at(const Model& model, double time) {
   return frames;
 }
 
+bool is_shape(const Model& model, const Collider& own) { return is_rigid(own) && !mesh_of(model, own); }
+
 bool are_shapes(const Model& model, const PairModel& pair) {
-  return is_rigid(pair.a) && is_rigid(pair.b) && !mesh_of(model, pair.a) && !mesh_of(model, pair.b);
+  return is_shape(model, pair.a) && is_shape(model, pair.b);
 }
 
 std::string name_of_pair(const Model& model, int pair) {

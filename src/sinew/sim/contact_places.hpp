@@ -51,7 +51,9 @@ void configure_touching(const Model& model, const std::vector<Placement>& bases,
 /// How far each frame has moved by a time.
 std::vector<Placement> frames_at(const Model& model, double time);
 
-/// Whether neither of two has a surface of triangles or bends: contact/meeting is for these.
+/// Whether an object is a rigid shape: it has no surface of triangles and does not bend.
+bool is_shape(const Model& model, const Collider& own);
+/// Whether both of two are: contact/meeting is for these.
 bool are_shapes(const Model& model, const PairModel& pair);
 
 /// [m] the smallest extent of an object at rest; infinite of half-spaces.
