@@ -6,7 +6,8 @@ a force (or a pressure), or by its weight; with and without friction, at rest an
 
     bench/contact_runs.py -o out/contact_runs                    all of them
     bench/contact_runs.py -o out/contact_runs --only beam10 ball some: words that the names of runs have
-    bench/contact_runs.py --table out/contact_runs/runs.csv      the table of a file of results
+    bench/contact_runs.py -o out/contact_runs --resume           those that runs.csv there does not have yet
+    bench/contact_runs.py --table AFTER.csv [BEFORE.csv]         the table of a file of results, beside another's
 
 Every run is one line of runs.csv: how it ended, why, how far it came, how many steps and iterations it took.
 """
@@ -37,6 +38,7 @@ from box_meshes import boxes, write_vtk  # noqa: E402
 
 MESHES = ROOT / "examples/meshes"
 Scene = dict[str, Any]
+Row = dict[str, Any]
 Vec = tuple[float, float, float]
 
 OBSTACLES = ("post", "wall", "ball", "box", "hull", "mesh")
@@ -226,13 +228,13 @@ COLUMNS = ("body", "obstacle", "drive", "friction", "analysis", "step", "end", "
            "contacts", "force", "tip", "seconds", "detail")
 
 
-def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path, limit: float) -> dict[str, Any]:
+def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path, limit: float) -> Row:
     body, kind, drive, friction, analysis, step = name
     scene = scene_of(body, kind, drive, friction, analysis, STEPS[analysis][step])
     title = "-".join(str(part) for part in name)
     (folder / f"{title}.yaml").write_text(json.dumps(scene, indent=1))
     out = folder / title
-    row: dict[str, Any] = dict(zip(COLUMNS, name))
+    row: Row = dict(zip(COLUMNS, name))
     begin = time.time()
     try:
         done = subprocess.run([program, "run", folder / f"{title}.yaml", "-o", out, "--quiet", "--force", "--threads", "1"],
@@ -249,8 +251,8 @@ def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path,
         if rows:
             last = rows[-1]
             row.update(reached=float(last["time"]) / scene["time"]["duration"], steps=len(rows) - 1,
-                       iterations=sum(int(own["newton"] or 0) for own in rows),
-                       contacts=max(int(float(own["press.contacts"])) for own in rows),
+                       iterations=sum(int(line["newton"] or 0) for line in rows),
+                       contacts=max(int(float(line["press.contacts"])) for line in rows),
                        force=f"{float(last['press.normal']):.4g}",
                        tip=" ".join(f"{float(last['tip.' + axis]):.5f}" for axis in "xyz"))
     if (out / "report.json").exists():
@@ -259,25 +261,50 @@ def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path,
     return row
 
 
-def table(rows: list[dict[str, Any]]) -> str:
-    """Of runs that went through, of all, for each body and way to press it."""
+def read(path: Path) -> list[Row]:
+    with open(path, newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def key(row: Row) -> tuple[str, ...]:
+    return tuple(str(row[column]) for column in COLUMNS[:6])
+
+
+def table(rows: list[Row], before: list[Row]) -> str:
+    """How many runs went through, for each body and drive, and the time of those that went through before as well."""
+    old = {key(row): row for row in before}
     count: Counter[tuple[str, str, str]] = Counter()
     done: Counter[tuple[str, str, str]] = Counter()
+    done_before: Counter[tuple[str, str, str]] = Counter()
     for row in rows:
-        key = (row["body"], row["analysis"], row["drive"])
-        count[key] += 1
-        done[key] += row["end"] == "done"
+        cell = (row["body"], row["analysis"], row["drive"])
+        count[cell] += 1
+        done[cell] += row["end"] == "done"
+        done_before[cell] += key(row) in old and old[key(row)]["end"] == "done"
+
+    def text(cell: tuple[str, str, str]) -> str:
+        if not count[cell]:
+            return ""
+        return (f"{done_before[cell]} -> " if before else "") + f"{done[cell]} of {count[cell]}"
+
     columns = [(analysis, drive) for analysis in STEPS for drive in DRIVES]
     lines = ["| body | " + " | ".join(f"{a}, {d}" for a, d in columns) + " |", "|---" * (len(columns) + 1) + "|"]
     for body in BODIES:
-        cells = [f"{done[body, a, d]} of {count[body, a, d]}" if count[body, a, d] else "" for a, d in columns]
-        lines.append(f"| {body} | " + " | ".join(cells) + " |")
-    through = sum(row["end"] == "done" for row in rows)
+        lines.append(f"| {body} | " + " | ".join(text((body, *column)) for column in columns) + " |")
+    through = sum(done.values())
     lines.append(f"\n{through} of {len(rows)} ({100.0 * through / max(1, len(rows)):.1f} %) went through.")
     ends = Counter((row["end"], row["status"]) for row in rows if row["end"] != "done")
     lines += [f"{number} {end} {status}" for (end, status), number in ends.most_common()]
     missed = sum(row["end"] == "done" and not int(row["contacts"] or 0) for row in rows)
     lines.append(f"{missed} of those that went through never touched.")
+    if before:
+        both = [(row, old[key(row)]) for row in rows if key(row) in old]
+        lines.append(f"Before, {sum(b['end'] == 'done' for _, b in both)} of the same {len(both)} went through.")
+        both = [(a, b) for a, b in both if a["end"] == b["end"] == "done"]
+        for what in ("seconds", "iterations"):
+            now, then = (sum(float(row[what] or 0) for row in one) for one in zip(*both)) if both else (0.0, 0.0)
+            lines.append(f"{what} of those {len(both)} that went through both times: {then:.0f} -> {now:.0f}"
+                         f" ({then / max(now, 1e-9):.1f} times fewer).")
     return "\n".join(lines)
 
 
@@ -289,11 +316,12 @@ def main() -> int:
     parser.add_argument("--every", type=int, default=1, help="take every n-th run only")
     parser.add_argument("--limit", type=float, default=120.0, help="[s] that a run may take")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--table", type=Path, help="print the table of these results, and run nothing")
+    parser.add_argument("--resume", action="store_true", help="keep the results that there are, and run the others")
+    parser.add_argument("--table", type=Path, nargs="+", metavar="CSV",
+                        help="print the table of these results, beside earlier ones if told, and run nothing")
     arguments = parser.parse_args()
     if arguments.table:
-        with open(arguments.table, newline="") as stream:
-            print(table(list(csv.DictReader(stream))))
+        print(table(read(arguments.table[0]), read(arguments.table[1]) if len(arguments.table) > 1 else []))
         return 0
     chosen = [name for name in names() if all(word in map(str, name) for word in arguments.only)][::arguments.every]
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -304,10 +332,14 @@ def main() -> int:
     for cells in ((6, 2, 2), (10, 3, 3), (16, 5, 5)):
         nodes, tetrahedra = boxes(np.array(cells), np.array([100.0, 30.0, 30.0]), lambda x, y, z: True)
         write_vtk(arguments.output / "beam{}x{}x{}.vtk".format(*cells), "beam, mm", nodes - [0, 15, 15], tetrahedra)
-    rows = []
-    with open(arguments.output / "runs.csv", "w", newline="") as stream:
+    results = arguments.output / "runs.csv"
+    rows = read(results) if arguments.resume and results.exists() else []
+    there = {key(row) for row in rows}
+    chosen = [name for name in chosen if tuple(map(str, name)) not in there]
+    with open(results, "a" if rows else "w", newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS, restval="")
-        writer.writeheader()
+        if not rows:
+            writer.writeheader()
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
             work = lambda name: run(name, arguments.program, arguments.output, arguments.limit)  # noqa: E731
             for number, row in enumerate(pool.map(work, chosen), 1):
@@ -316,7 +348,7 @@ def main() -> int:
                 stream.flush()
                 if sys.stderr.isatty():
                     print(f"\r{number} of {len(chosen)}", end="", file=sys.stderr)
-    print(table(rows))
+    print(table(rows, []))
     return 0
 
 

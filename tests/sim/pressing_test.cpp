@@ -209,6 +209,26 @@ TEST(Pressing, JacobiansOfStuckContactsAreDifferences) {
   }
 }
 
+/// What a workspace was used for before does not change what a step would do from a state that touches.
+TEST(Pressing, JacobiansOfStepsDoNotDependOnWhatWasDoneBefore) {
+  Scene scene = beside_a_wall(0.5);
+  wish_for_force(scene);
+  Robot robot(scene);
+  for (int i = 0; i < 100; ++i) robot.state = robot.direct({4.0, 0.5});
+  ASSERT_GT(robot.force(), 0.01);
+  const auto looked_at_with = [&](Workspace& workspace) {
+    return actuator_jacobian(robot.model, workspace, robot.state, JacobianOf::step, scene.time.step).effectors;
+  };
+  Workspace fresh = make_workspace(robot.model), used = make_workspace(robot.model);
+  State elsewhere = robot.state;  // drawn to the wall so fast that contacts are looked for far away
+  for (SolidState& own : elsewhere.solids) own.v.row(1).setConstant(-20.0);
+  step(robot.model, used, {{4.0, 0.5}, {}}, scene.time.step, elsewhere);
+  const Eigen::MatrixXd expected = looked_at_with(fresh);
+  EXPECT_GT(expected.row(3).norm(), 0.0);
+  EXPECT_EQ(looked_at_with(used), expected);
+  EXPECT_EQ(looked_at_with(fresh), expected);
+}
+
 /// What cannot be pressed because it is far from it is told, and nothing moves for it.
 TEST(Pressing, FarFromTheWallNothingIsKnown) {
   Scene scene = at_rest(beside_a_wall(0.5));

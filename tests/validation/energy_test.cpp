@@ -105,5 +105,20 @@ TEST(Energy, viscosity_takes_more_of_a_vibration_than_the_step_does) {
   EXPECT_LT(left[1], 0.7 * left[0]);
 }
 
+/// Where nothing moves by itself, a load that stands from the start is brought on from nothing: all of its work is
+/// stored, however far it bends.
+TEST(Energy, equilibria_under_loads_of_the_start_store_their_work) {
+  for (const double force : {0.3e-3, 5e-3}) {  // [N] the tip moves by less, and by more, than 1 % of the length
+    Scene scene = straight_rod(0.5, 8, Circle{0.005}, kBending, 0, 2);
+    scene.rods[0].second.material = {10e6, 0.45, 1000.0};
+    add_load(scene, Vec3(0, force, 0)).factor = Table{{0.0}, {1.0}};
+    const Model model = build(scene, read_block);
+    const State end = states_from(model, initial_state(model)).back();
+    const double stored = energy_balance(model, end).elastic;
+    EXPECT_GT(stored, 0.0);
+    EXPECT_NEAR(end.energies.work, stored, 0.01 * stored) << force;
+  }
+}
+
 }  // namespace
 }  // namespace sinew::test

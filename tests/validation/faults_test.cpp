@@ -508,6 +508,36 @@ TEST(Faults, body_gains) {
   EXPECT_EQ(fault("body_gains", {"time.step=1 ms"}).warning("energy_gain"), nullptr);
 }
 
+// A disc that presses with its rim is held as a broad one is, also where the corners of its prism stand out by more
+// than a fiftieth of its thickness. How deep its edges lie in the block between nodes is told, and no step comes deeper
+// than a quarter.
+TEST(Faults, disc_cuts_block) {
+  for (const char* analysis : {"quasi_static", "dynamic"}) {
+    const std::string how = std::string("analysis=") + analysis;
+    const RecordedRun thin = fault("disc_cuts_block", {how}),
+                      broad = fault("disc_cuts_block", {how, "obstacles.disc.cylinder.length=10 mm"});
+    ASSERT_TRUE(thin.done() && broad.done()) << thin.why() << broad.why();
+    const std::vector<double> force = thin.signal("f.normal"), expected = broad.signal("f.normal");
+    for (std::size_t i = 10; i < std::min(force.size(), expected.size()); ++i)
+      EXPECT_NEAR(force[i], expected[i], 0.06 * expected[i]) << analysis << " " << i;
+    EXPECT_EQ(thin.warning("penetration"), nullptr);
+  }
+  const auto above_nodes = [](const std::string& way) {
+    return fault("disc_cuts_block", {"obstacles.disc.pose.translate=[100 mm, 7 mm, 80.1 mm]",
+                                     "frames.hand.motion.translate=[[0, 0, 0], [0, 0, " + way + "]]"});
+  };
+  const RecordedRun deep = above_nodes("-8 mm");
+  ASSERT_TRUE(deep.done()) << deep.why();
+  const Warning* told = deep.warning("penetration");
+  ASSERT_TRUE(told);
+  EXPECT_NE(told->remedy.find("smaller triangles"), std::string::npos);
+  EXPECT_GT(told->value, 0.2e-3);
+  EXPECT_LT(told->value, 0.5e-3);
+  const RecordedRun cut = above_nodes("-20 mm");
+  EXPECT_EQ(cut.failure().status, Status::passed_through);
+  EXPECT_EQ(cut.failure().detail.find("disc and block: an edge lies"), 0U) << cut.why();
+}
+
 // Rods are braked by the time step as they spin, by T = J omega^3 h: told beside the moment f R of friction. With m a =
 // m g - f and J a / R = f R - T of a solid cylinder, T = 1.5 (f - m g / 3) R.
 TEST(Faults, rod_spins_on_floor) {
@@ -521,6 +551,10 @@ TEST(Faults, rod_spins_on_floor) {
   EXPECT_NEAR(told->value, drag / (drag + friction), 0.01);
   EXPECT_GT(told->value, 0.25);
   EXPECT_EQ(run.warning("coarse_rolling"), nullptr);
+  const std::string& remedy = told->remedy;  // "take steps of ... ms or less, ..."
+  const std::size_t at = remedy.find("steps of ") + 9;
+  const std::string step = "time.step=" + remedy.substr(at, remedy.find(" or less") - at);
+  EXPECT_EQ(fault("rod_spins_on_floor", {step}).warning("spin_damped"), nullptr) << step;
 }
 
 TEST(Faults, nothing_acts) {

@@ -175,6 +175,38 @@ TEST(Snap, a_run_ends_there_if_it_is_told_to_stop) {
   EXPECT_GT(run.steps.back().time, told->time - 0.05);
 }
 
+// However soon the work that a step may take is spent: what has gone over to the other side is told, and what ends
+// `converged` is at the equilibrium there.
+TEST(Snap, nothing_goes_over_unsaid_where_little_work_is_allowed) {
+  const double other_side = arch("arch_snaps").last("mid.z");
+  int done = 0, stopped = 0;
+  for (const bool floor : {true, false}) {
+    for (const char* step : {"20 ms", "200 ms", "500 ms"}) {
+      for (int limit = 1; limit <= 10; ++limit) {
+        std::vector<std::string> changes = {std::string("time.step=") + step,
+                                            "newton={limit: " + std::to_string(limit) + "}"};
+        if (!floor) changes = and_no_floor(changes);
+        SCOPED_TRACE(testing::Message() << floor << ", " << step << ", " << limit);
+        const RecordedRun run = arch("arch_snaps", changes);
+        const std::vector<double> z = run.signal("mid.z");
+        if (*std::min_element(z.begin(), z.end()) < 0.0) {
+          EXPECT_TRUE(run.warning("snapped"));
+        }
+        run.done() ? ++done : ++stopped;
+        if (run.done()) {
+          EXPECT_NEAR(run.last("mid.z"), other_side, 1e-6);
+        }
+        changes.push_back("snap=stop");
+        const RecordedRun ends = arch("arch_snaps", changes);
+        EXPECT_FALSE(ends.done());
+        EXPECT_GT(ends.last("mid.z"), 0.0);
+      }
+    }
+  }
+  EXPECT_GT(done, 20);
+  EXPECT_GT(stopped, 2);
+}
+
 TEST(Snap, nothing_is_told_where_nothing_lets_go) {
   const RecordedRun run = arch("arch_snaps", {"loads.push.factor={times: [0, 1], values: [0, 0.02]}"});
   ASSERT_TRUE(run.done()) << run.why();

@@ -132,9 +132,12 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
                   .where = "contact",
                   .message = name_of_pair(model, contact.deepest_pair) + " overlap by " +
                              three_digits(1e3 * contact.penetration) + " mm",
-                  .remedy = "take shorter steps" +
-                            std::string(bends(contact.deepest_pair) ? ", give the rod more sections" : "") +
-                            (fixed ? ", or leave `newton` out" : ""),
+                  .remedy = contact.between_nodes
+                                ? "an edge lies between nodes of the mesh that it bends: give this "
+                                  "smaller triangles there, or take a round edge"
+                                : "take shorter steps" +
+                                      std::string(bends(contact.deepest_pair) ? ", give the rod more sections" : "") +
+                                      (fixed ? ", or leave `newton` out" : ""),
                   .value = contact.penetration,
                   .limit = limit,
                   .unit = "m"});

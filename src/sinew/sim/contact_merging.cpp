@@ -45,6 +45,7 @@ const ContactSide& other_side(const ContactState& own, const Spot& spot) { retur
 
 bool same_part(const ContactSide& a, const ContactSide& b) {
   if (!(a.on == b.on) || a.nodes != b.nodes || a.abscissae != b.abscissae || a.local.kind != b.local.kind) return false;
+  if (!is_rigid(a.on)) return true;  // (places are those of nodes and abscissae)
   const auto &x = a.local.x, &y = b.local.x;
   if (a.local.corners() < 2) return x[0] == y[0];
   return (x[0] == y[0] && x[1] == y[1]) || (x[0] == y[1] && x[1] == y[0]);  // (an axis may be told from either end)

@@ -18,7 +18,8 @@ using contact::Simplex;
 
 /// Part of the thinner of two by which they may overlap.
 constexpr double kDeepest = 0.25;
-/// And by which a rod may lie in what it touches between the places where it does, unsaid.
+/// And by which a rod may lie in what it touches between the places where it does, or an edge in a surface between its
+/// nodes, unsaid.
 constexpr double kDeepestBetween = 0.1;
 /// And that parts of rigid shapes may come to overlap in a step by which these were not near each other.
 constexpr double kDeepestMade = 0.02;
@@ -113,11 +114,11 @@ double beyond_its_parts(const StepMotion& motion, const ContactState& own, const
     const contact::Pose pose = end.pose(hard);
     return gap_to_shape(shape_of(end.model, hard), pose.R.transpose() * (point - pose.p), 0.0);
   };
-  double more = 0.0;
+  double more = 0.0;  // (flat parts meet a cylinder at edges that stand out of it)
   if (is_shape(end.model, own.b.on)) {
-    more = gap_to(own.b.on, touch.point_a) - gap;
+    more = gap_to(own.b.on, touch.point_a) - stands_out(end.model, own.b.on) - gap;
   } else if (is_shape(end.model, own.a.on)) {
-    more = gap_to(own.a.on, touch.point_b) - gap;
+    more = gap_to(own.a.on, touch.point_b) - stands_out(end.model, own.a.on) - gap;
   } else {
     more = separation(motion, own, 1.0) - gap;
   }
@@ -257,21 +258,22 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   Passage found;
   const Model& model = context.model;
   if (model.pairs.empty()) return found;
-  // Of what is deeper than it may be, the deepest counts; what doing the step again may mend goes before what makes it
-  // be refused.
+  // Of what is deeper than it may be, the deepest counts; but what doing the step again may mend goes before what makes
+  // it be refused.
   const auto may_be_mended = [](Passage::Kind kind) {
     return kind == Passage::Kind::missed || kind == Passage::Kind::left_behind;
   };
   const auto note = [&](Passage::Kind kind, std::size_t pair, double depth, double most) {
-    if (!(depth > std::max(most, found.depth))) return;
-    if (!may_be_mended(kind) && may_be_mended(found.kind)) return;
+    if (!(depth > most)) return;
+    if (may_be_mended(kind) == may_be_mended(found.kind) ? !(depth > found.depth) : may_be_mended(found.kind)) return;
     found.kind = kind;
     found.pair = static_cast<int>(pair);
     found.depth = depth;
   };
-  const auto note_overlap = [&found](std::size_t pair, double depth, double least) {
+  const auto note_overlap = [&found](std::size_t pair, double depth, double least, bool between_nodes = false) {
     if (!(depth > std::max(least, found.overlap))) return;
     found.overlap = depth;
+    found.between_nodes = between_nodes;
     found.overlapping = static_cast<int>(pair);
   };
   if (room.touches.size() == next.contacts.size()) {
@@ -304,6 +306,11 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     if (fresh) place->second = farthest(motion, room.surfaces, own);
     return place->second;
   };
+  const auto is_pressed = [&next](std::size_t pair) {
+    return std::any_of(next.contacts.begin(), next.contacts.end(), [pair](const ContactState& own) {
+      return own.pair == static_cast<int>(pair) && !own.force.isZero(0.0);
+    });
+  };
   std::vector<ContactState> candidates;
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
     const PairModel& pair = model.pairs[i];
@@ -314,6 +321,13 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const double between = deepest_between(end, pair) - pair.depth;
     note_overlap(i, between, kDeepestBetween * thin);
     note(Passage::Kind::folded, i, between, kDeepest * thin);
+    const bool rods_meet = pair.a.kind == Kind::rod || pair.b.kind == Kind::rod;  // (their chords may lie too deep)
+    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b)) && is_pressed(i)) {
+      if (!ended) ended.emplace().fit(end);
+      const double cut = depth_between_triangles(end, *ended, static_cast<int>(i)) - pair.depth;
+      note_overlap(i, cut, kDeepestBetween * thin, true);
+      note(Passage::Kind::cut, i, cut, kDeepest * thin);
+    }
     const bool shapes = are_shapes(model, pair);
     const bool known = shapes && std::any_of(room.found.begin(), room.found.end(),
                                              [i](const auto& part) { return part.first == static_cast<int>(i); });
@@ -326,8 +340,11 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
         note(Passage::Kind::passed, i, made, kDeepestMade * thin);
       }
     }
-    // Two that were apart have to move by the thickness of both to get to each other's other side.
-    if (speed <= std::min(alarm, 0.5 * thin)) continue;
+    // Two that were apart have to move by the thickness of both to get to each other's other side. (What is not met may
+    // come in however little it moves.)
+    const bool all_are_met =
+        std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end();
+    if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {
         note(Passage::Kind::passed, i, depth, kDeepest * thin);

@@ -54,6 +54,11 @@ const contact::Mesh* mesh_of(const Model& model, const Collider& own) {
   return std::get_if<contact::Mesh>(&shape_of(model, own));
 }
 
+double stands_out(const Model& model, const Collider& own) {
+  const auto* cylinder = is_rigid(own) ? std::get_if<contact::Cylinder>(&shape_of(model, own)) : nullptr;
+  return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
+}
+
 double thickness_of(const Model& model, const Collider& own) {
   struct OfShape {
     double operator()(const contact::HalfSpace&) const { return INFINITY; }

@@ -76,9 +76,16 @@ class Search {
     each_point_on_piece(own.b, own.a, on_piece);
     each_crossing(own.a, own.b, [&](const Edge& a, const Edge& b, const contact::Nearest& found, std::uint64_t) {
       if (found.gap < 0.0 && crosses_inside(a, b, found))
-        deepest = std::max(deepest, -found.gap - stands_out(a.side.on) - stands_out(b.side.on));
+        deepest =
+            std::max(deepest, -found.gap - stands_out(start_.model, a.side.on) - stands_out(start_.model, b.side.on));
     });
     if (deepest > 0.0) return deepest;
+    return depth_between_triangles(number);
+  }
+
+  double depth_between_triangles(int number) const {
+    const PairModel& own = start_.model.pairs[static_cast<std::size_t>(number)];
+    if (own.a == own.b) return 0.0;
     return std::max(depth_of_edges(own.a, own.b), depth_of_edges(own.b, own.a));
   }
 
@@ -106,14 +113,15 @@ class Search {
     return std::max(0.0, point.radius + (in ? least : -least));
   }
 
-  /// How deep edges, axes and pieces of one are in the middle between two triangles of the other, through which they
-  /// pass.
+  /// How deep edges, axes and pieces of one are in the other in the middle between the triangles that they pass through
+  /// and, where they are thin, their ends.
   double depth_of_edges(const Collider& poking, const Collider& faced) const {
     const Surface* surface = surfaces_.of(faced);
     if (!surface) return 0.0;
     double deepest = 0.0;
     for (const Edge& edge : edges_of(poking, around(faced))) {
       std::vector<double> passes;
+      if (edge.placed.radius == 0.0) passes = {0.0, 1.0};  // (the axis of a cylinder has ends that are not round)
       surface->faces.each_near(edge.box, [&](int number) {
         const std::array<int, 3>& t = surface->mesh->triangles[number];
         const auto at = pierced_at(edge.placed.x[0], edge.placed.x[1],
@@ -485,15 +493,9 @@ class Search {
       return Vec3(weights[0] * own.placed.x[0] + weights[1] * own.placed.x[1]);
     };
     const auto in = [this](const Collider& body, const Vec3& point) {
-      return body.kind == Kind::rod || depth_in(body, contact::point_at(point, stands_out(body))) > 0.0;
+      return body.kind == Kind::rod || depth_in(body, contact::point_at(point, stands_out(start_.model, body))) > 0.0;
     };
     return in(b.side.on, at(a, found.a)) && in(a.side.on, at(b, found.b));
-  }
-
-  /// By how much the edges of the prism that stands for a cylinder are outside it [m].
-  double stands_out(const Collider& body) const {
-    const auto* cylinder = is_rigid(body) ? std::get_if<contact::Cylinder>(&shape_of(start_.model, body)) : nullptr;
-    return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
   }
 
   /// Whether two edges are as good as parallel: the plane through thin ones is no normal then, and the axis of a
@@ -555,6 +557,11 @@ void search_whole(const Moment& start, double alarm, double depth, const Surface
   Search search(start, alarm, depth, surfaces, found);
   search.whole_pieces = true;
   search.pair(number);
+}
+
+double depth_between_triangles(const Moment& now, const Surfaces& surfaces, int number) {
+  std::vector<ContactState> none;
+  return Search(now, 0.0, 0.0, surfaces, none).depth_between_triangles(number);
 }
 
 double overlap(const Moment& now, const Surfaces& surfaces, int number) {

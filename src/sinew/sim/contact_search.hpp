@@ -20,6 +20,11 @@ void search(const Moment& start, double alarm, double depth, const Surfaces& sur
 void search_whole(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
                   std::vector<ContactState>& found);
 
+/// How deep [m] edges, axes and pieces of one object of a pair are in the other in the middle between the triangles
+/// that they pass through and, where they are thin, their ends; 0 where they stay outside. Flat parts of a mesh are met
+/// by points alone, and bend round an edge.
+double depth_between_triangles(const Moment& now, const Surfaces& surfaces, int number);
+
 /// How deep [m] points of one object of a pair are inside the other or, where none are, edges; 0 where none is.
 double overlap(const Moment& now, const Surfaces& surfaces, int number);
 

@@ -223,11 +223,15 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     own.force = old->force;
     own.normal = old->normal;
   }
+  room.left_out.clear();
+  std::erase_if(found, [&](const ContactState& own) {
+    const ContactKey key(own.pair, own.part);
+    const bool left_out = std::find(left_behind.begin(), left_behind.end(), key) != left_behind.end();
+    if (left_out) room.left_out.push_back(own.pair);
+    return left_out;
+  });
   room.found.clear();
   for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
-  std::erase_if(found, [&](const ContactState& own) {
-    return std::find(left_behind.begin(), left_behind.end(), ContactKey(own.pair, own.part)) != left_behind.end();
-  });
   if (room.thin.empty()) {
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));

@@ -36,6 +36,7 @@ struct ContactRoom {
   Surfaces surfaces;                           ///< at the start
   std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
   std::vector<ContactKey> found;               ///< ascending
+  std::vector<int> left_out;                   ///< pairs of which a contact is not met in this step
   std::vector<Touch> touches;
   /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
   std::vector<int> playing;

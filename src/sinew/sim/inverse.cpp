@@ -370,6 +370,7 @@ Aim Inverse::aim(const Model& model, const State& state) {
                 : !binding_.empty() ? Aim::Outcome::limited
                 : on_the_way_       ? Aim::Outcome::on_the_way
                                     : Aim::Outcome::nearest;
+  aim.short_of = aim.outcome != Aim::Outcome::reached && steering_.cut_short();
   return aim;
 }
 

@@ -80,6 +80,8 @@ void agree(const Model& model, Memory& memory, const State& state, double time, 
 bool linearize_step(Memory& memory, const State& start, const Command& command, double h, StageTimes& times,
                     const Linearization::Steer& steer) {
   memory.context.set(start, command, h);
+  memory.alarm = alarm_distance(memory.context);
+  memory.left_behind.clear();
   begin_step(memory);
   place_held(memory.context, memory.iterate.state);
   return solve_there(memory, solid::Tangent::definite, times, steer);
@@ -113,7 +115,7 @@ struct Found {
 /// What came of it, where larger commands may come nearer (`short_of`) unless all targets are reached.
 Aim aim_at(Inverse& inverse, const Model& model, const State& state, bool short_of) {
   Aim aim = inverse.aim(model, state);
-  aim.short_of = short_of && aim.outcome != Aim::Outcome::reached;
+  aim.short_of = aim.outcome != Aim::Outcome::reached && (short_of || aim.short_of);
   return aim;
 }
 

@@ -170,6 +170,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (memory.passage.overlap > report.contact.penetration) {
       report.contact.penetration = memory.passage.overlap;
       report.contact.deepest_pair = memory.passage.overlapping;
+      report.contact.between_nodes = memory.passage.between_nodes;
     }
     const bool lifts = lifts_apart(context.model, iterate.state, here.contacts());
     const std::vector<Warning> rolling =
@@ -189,6 +190,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       report.detail = name_of_pair(context.model, memory.passage.pair);
       if (memory.passage.kind == Passage::Kind::folded) {
         report.detail += ": " + depth + " of the rod lies in it between two points; give the rod more sections";
+      } else if (memory.passage.kind == Passage::Kind::cut) {
+        report.detail += ": an edge lies " + depth +
+                         " deep between the nodes of a surface; give the mesh smaller triangles there, or a round edge";
       } else if (memory.passage.kind == Passage::Kind::left_behind) {
         report.detail += " press on each other " + depth + " apart";
       } else {

@@ -99,7 +99,10 @@ std::vector<Warning> assess_spin(const StepContext& context, const State& next, 
     if (!(share > worst)) continue;
     worst = share;
     // (Where the contacts' moment is not much besides, it is there for the drag, and shrinks with it.)
-    step = context.h * (share > 0.5 ? kSpins / turn : std::max(kDamped / share, kSpins / turn));
+    // The drag is as h, and share = drag / all. What is braked less spins faster: half of it is aimed at.
+    constexpr double kAim = 0.5 * kDamped;
+    const double shorter = kAim / (1.0 - kAim) * (1.0 - share) / share;
+    step = context.h * (share > 0.5 ? kSpins / turn : std::max(shorter, kSpins / turn));
     damped = static_cast<int>(n);
   }
   if (damped < 0) return {};

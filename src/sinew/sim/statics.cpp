@@ -154,6 +154,7 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     const double moved = accepted(report.status) && arrived ? way() : 0.0;
     if (!accepted(report.status) || moved > kFarthest) {
       reached.report = report;
+      if (accepted(report.status)) reached.report.status = Status::max_iterations;  // (it is on its way)
       most = 0.5 * tau;
       tau *= 0.25;
       continue;
@@ -360,7 +361,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
                   time};
   const int folded = count_folded(model, state);
   Memory& memory = workspace.memory();
-  // What contacts hold is not part of the tangent that tells of stability, and they make kinks in a path.
+  // Contacts make kinks in a path, and it is not followed. Equilibria that they do not hold are told by a warning.
   const bool touches = !model.pairs.empty();
   const auto sound = [&](const Reached& reached) {
     return accepted(reached.report.status) && (touches || !reached.report.unstable) &&
@@ -392,18 +393,23 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   StepReport spent = end.report;
   std::vector<Warning> snaps;
   bool stops = false;  // as `snap: stop` asks
-  const auto let_go = [&](const Iterate& from, double t) {
-    Reached next = settle(memory, ramp, from.state, t, iteration_limit - spent.newton);
-    add_effort(next.report, spent);
-    if (!sound(next)) return next;
-    std::optional<Warning> snap = snapped(memory, {model, ramp, from.state, from.t, next.at.state, t});
-    stops = snap && model.scene.snap == Snap::stop;
+  // Warns of what goes over to another equilibrium, or ends there; false where nothing is set free.
+  const auto warn_of_snap = [&](const Iterate& from, const State& to, double t) {
+    std::optional<Warning> snap = snapped(memory, {model, ramp, from.state, from.t, to, t});
+    if (!snap) return false;
+    stops = model.scene.snap == Snap::stop;
     if (stops) {
       end.report.status = Status::path_lost;
       end.report.detail = snap->where + ": " + snap->message + "; `snap: stop`";
-    } else if (snap) {
+    } else {
       snaps.push_back(std::move(*snap));
     }
+    return true;
+  };
+  const auto let_go = [&](const Iterate& from, double t) {
+    Reached next = settle(memory, ramp, from.state, t, iteration_limit - spent.newton);
+    add_effort(next.report, spent);
+    if (sound(next)) warn_of_snap(from, next.at.state, t);
     return next;
   };
   if (!sound(end) || jumped({model, ramp, state, 0.0, end.at.state, 1.0})) {
@@ -413,6 +419,8 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       add_effort(next.report, spent);
       const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
       if (!sound(next) || back) break;
+      // (The last arc lands on the load, wherever Newton's method goes to.)
+      if (next.at.t == 1.0 && jumped({model, ramp, on.state, on.t, next.at.state, 1.0})) break;
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
     }
@@ -435,7 +443,20 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
       Reached minimum = go(on.state, 1.0, rules);
       add_effort(minimum.report, spent);
-      if (accepted(minimum.report.status) || !accepted(end.report.status)) end = std::move(minimum);
+      const Iterate start{state, 0.0};
+      if (accepted(minimum.report.status)) {
+        end = std::move(minimum);
+        warn_of_snap(on, end.at.state, 1.0);
+      } else if (!accepted(end.report.status)) {
+        end = std::move(minimum);
+      } else if (jumped({model, ramp, state, 0.0, end.at.state, 1.0})) {
+        snaps.clear();  // of parts that led nowhere
+        if (!warn_of_snap(start, end.at.state, 1.0)) {
+          end.report.status = Status::path_lost;
+          end.report.detail = moved_most(model, state, end.at.state).name +
+                              ": the equilibrium that was found is none that its loads lead to";
+        }
+      }
       if (end.report.status == Status::max_iterations && end.report.detail.empty()) {
         char text[80];
         std::snprintf(text, sizeof text, "it came as far as %.3g %% of the step in %d iterations", 100.0 * on.t,

@@ -68,12 +68,10 @@ std::string_view explain(Status status) {
              "less.";
     case Status::inconsistent:
       return "Constraints contradict each other: no strain and no motion can answer all of them. Drive one of them by "
-             "a "
-             "force instead of a position, leave one out, or add the strains that are missing.";
+             "a force instead of a position, leave one out, or add the strains that are missing.";
     case Status::passed_through:
-      return "Something got to the other side of what stops it, or deep into it, within one step. Take shorter steps, "
-             "or "
-             "move and load it more slowly.";
+      return "Something got to the other side of what stops it, or deep into it. Do what is said above; else take "
+             "shorter steps, or move and load it more slowly.";
   }
   return "";
 }

@@ -71,6 +71,7 @@ struct ContactReport {
   int contacts = 0;             ///< near enough to matter, and points that rub
   double penetration = 0.0;     ///< [m] of the deepest, in a pair that was apart when the run began
   int deepest_pair = -1;        ///< of the model's
+  bool between_nodes = false;   ///< there: an edge in a surface, between its nodes
   int sweeps = 0, newton = 0;   ///< of solve/coulomb in the whole step
   int unsolved = 0;             ///< of its problems in the step, those not solved to its tolerance
   solve::CoulombResidual left;  ///< of the last one
@@ -100,8 +101,9 @@ struct Aim {
   /// No other commands within the limits would have done better in the last linearisation. Not known with friction, or
   /// more than a dozen contacts: none around it would have.
   bool certain = false;
-  int apart = -1;         ///< effector whose two are to press and are not near each other
-  bool short_of = false;  ///< commands that would come nearer were tried, and no step with them converged
+  int apart = -1;  ///< effector whose two are to press and are not near each other
+  /// Other commands may come nearer: no step with them converged, or there was too much work to look for them.
+  bool short_of = false;
   /// [-] by how much the linearisation that says so is off (`StepReport::off`); 0 where it is not known to be.
   double off = 0.0;
 };

@@ -20,8 +20,8 @@ struct StepContext {
   double rate = 0.0;  ///< 1 / h [1/s]; 0: equilibrium, without inertia and damping
   Command command;    ///< at the end of the step
   Vec3 gravity;       ///< [m/s^2] then
-  /// The iterate is where the step starts: the forces that would stop a moving rod there are no forces that act along
-  /// the step, and stay out of its geometric stiffness, where they would count as compression.
+  /// The iterate is a step's first one: the forces that would stop a moving rod there, or drive it on, are no forces
+  /// that act along the step, and stay out of its geometric stiffness, where they would count as compression.
   bool at_start = false;
   std::vector<Placement> displacement;        ///< of each frame, at the end of the step
   std::vector<Placement> bases, cable_bases;  ///< of each rod and cable, at the end of the step

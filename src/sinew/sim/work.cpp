@@ -173,9 +173,9 @@ Work work_of_frames(const StepContext& context, const State& next, const std::ve
 Work work(const StepContext& context, const State& next, const std::vector<Touch>& touches) {
   const Model& model = context.model;
   Work sum;
-  // What is applied from the start acts in full over the first step. Parts of a step and static paths begin with
+  // What is applied from the start acts in full over the first step in time. Parts of one, and equilibria, begin with
   // nothing.
-  const bool whole = model.scene.analysis != Analysis::statics && context.h > 0.999 * model.scene.time.step;
+  const bool whole = model.scene.analysis == Analysis::dynamic && context.h > 0.999 * model.scene.time.step;
   const bool first = context.start.time == 0.0 && whole;
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const ActuatorModel& actuator = model.actuators[i];
