@@ -322,9 +322,14 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     note_overlap(i, between, kDeepestBetween * thin);
     note(Passage::Kind::folded, i, between, kDeepest * thin);
     const bool rods_meet = pair.a.kind == Kind::rod || pair.b.kind == Kind::rod;  // (their chords may lie too deep)
-    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b)) && is_pressed(i)) {
+    const auto cut_at = [&](const Moment& now, const Surfaces& surfaces) {
+      return depth_between_triangles(now, surfaces, static_cast<int>(i)) - pair.depth;
+    };
+    // (No deeper at the end than at the start and what the two have moved.)
+    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b)) && is_pressed(i) &&
+        cut_at(start, room.surfaces) + speed > kDeepestBetween * thin) {
       if (!ended) ended.emplace().fit(end);
-      const double cut = depth_between_triangles(end, *ended, static_cast<int>(i)) - pair.depth;
+      const double cut = cut_at(end, *ended);
       note_overlap(i, cut, kDeepestBetween * thin, true);
       note(Passage::Kind::cut, i, cut, kDeepest * thin);
     }
