@@ -127,17 +127,18 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
   const auto bends = [&model](int pair) {
     return model.pairs[pair].a.kind == Collider::Kind::rod || model.pairs[pair].b.kind == Collider::Kind::rod;
   };
+  const std::string finer_mesh =
+      "an edge lies between nodes of the mesh that it bends: give this smaller triangles there, or take a round edge";
+  const auto shorter_steps = [&](int pair) {
+    return std::string("take shorter steps") + (bends(pair) ? ", give the rod more sections" : "") +
+           (fixed ? ", or leave `newton` out" : "");
+  };
   if (contact.deepest_pair >= 0 && contact.penetration > limit) {
     warnings.add({.code = "penetration",
                   .where = "contact",
                   .message = name_of_pair(model, contact.deepest_pair) + " overlap by " +
                              three_digits(1e3 * contact.penetration) + " mm",
-                  .remedy = contact.between_nodes
-                                ? "an edge lies between nodes of the mesh that it bends: give this "
-                                  "smaller triangles there, or take a round edge"
-                                : "take shorter steps" +
-                                      std::string(bends(contact.deepest_pair) ? ", give the rod more sections" : "") +
-                                      (fixed ? ", or leave `newton` out" : ""),
+                  .remedy = contact.between_nodes ? finer_mesh : shorter_steps(contact.deepest_pair),
                   .value = contact.penetration,
                   .limit = limit,
                   .unit = "m"});

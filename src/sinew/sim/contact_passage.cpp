@@ -93,14 +93,7 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
 /// How far a point is outside a surface [m], if that is less than `far`, or else infinite; 0 inside.
 double gap_to_surface(const Surface& surface, const Vec3& point, double far) {
   if (contact::inside(*surface.mesh, surface.x, surface.faces, point)) return 0.0;
-  double least = INFINITY;
-  const contact::Box near(Vec3(point.array() - far), Vec3(point.array() + far));
-  surface.faces.each_near(near, [&](int number) {
-    const std::array<int, 3>& t = surface.mesh->triangles[number];
-    const std::array<Vec3, 3> x = {surface.x.col(t[0]), surface.x.col(t[1]), surface.x.col(t[2])};
-    const std::array<double, 3> weights = contact::on_triangle(point, x[0], x[1], x[2]);
-    least = std::min(least, (point - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
-  });
+  const double least = distance_to_triangles(surface, point, far);
   return least < far ? least : INFINITY;
 }
 
@@ -307,8 +300,8 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     return place->second;
   };
   const auto is_pressed = [&next](std::size_t pair) {
-    return std::any_of(next.contacts.begin(), next.contacts.end(), [pair](const ContactState& own) {
-      return own.pair == static_cast<int>(pair) && !own.force.isZero(0.0);
+    return std::any_of(next.contacts.begin(), next.contacts.end(), [pair](const ContactState& contact) {
+      return contact.pair == static_cast<int>(pair) && !contact.force.isZero(0.0);
     });
   };
   std::vector<ContactState> candidates;

@@ -54,8 +54,8 @@ const contact::Mesh* mesh_of(const Model& model, const Collider& own) {
   return std::get_if<contact::Mesh>(&shape_of(model, own));
 }
 
-double stands_out(const Model& model, const Collider& own) {
-  const auto* cylinder = is_rigid(own) ? std::get_if<contact::Cylinder>(&shape_of(model, own)) : nullptr;
+double stands_out(const Model& model, const Collider& object) {
+  const auto* cylinder = is_rigid(object) ? std::get_if<contact::Cylinder>(&shape_of(model, object)) : nullptr;
   return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;
 }
 

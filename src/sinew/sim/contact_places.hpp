@@ -57,7 +57,7 @@ bool is_shape(const Model& model, const Collider& own);
 bool are_shapes(const Model& model, const PairModel& pair);
 
 /// By how much the edges of the prism that stands for a cylinder are outside it [m]; 0 of all else.
-double stands_out(const Model& model, const Collider& own);
+double stands_out(const Model& model, const Collider& object);
 
 /// [m] the smallest extent of an object at rest; infinite of half-spaces.
 double thickness_of(const Model& model, const Collider& own);

@@ -105,13 +105,7 @@ class Search {
     const double all = surface->faces.whole().sizes().norm();
     double least = INFINITY;
     for (double far = in ? 0.01 * all : std::max(alarm_, depth_) + point.radius; least == INFINITY; far *= 4.0) {
-      const contact::Box near(Vec3(point.x[0].array() - far), Vec3(point.x[0].array() + far));
-      surface->faces.each_near(near, [&](int number) {
-        const std::array<int, 3>& t = surface->mesh->triangles[number];
-        const std::array<Vec3, 3> x = {surface->x.col(t[0]), surface->x.col(t[1]), surface->x.col(t[2])};
-        const std::array<double, 3> weights = contact::on_triangle(point.x[0], x[0], x[1], x[2]);
-        least = std::min(least, (point.x[0] - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
-      });
+      least = distance_to_triangles(*surface, point.x[0], far);
       if (!in || far > all) break;
       if (least > far) least = INFINITY;  // (beyond the box something may be nearer)
     }

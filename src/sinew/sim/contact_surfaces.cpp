@@ -77,6 +77,18 @@ const Surface* Surfaces::of(const Collider& own) const {
   return surface.mesh ? &surface : nullptr;
 }
 
+double distance_to_triangles(const Surface& surface, const Vec3& point, double far) {
+  double least = INFINITY;
+  const contact::Box near(Vec3(point.array() - far), Vec3(point.array() + far));
+  surface.faces.each_near(near, [&](int number) {
+    const std::array<int, 3>& t = surface.mesh->triangles[number];
+    const std::array<Vec3, 3> x = {surface.x.col(t[0]), surface.x.col(t[1]), surface.x.col(t[2])};
+    const std::array<double, 3> weights = contact::on_triangle(point, x[0], x[1], x[2]);
+    least = std::min(least, (point - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
+  });
+  return least;
+}
+
 std::optional<Vec3> outward_of_ridge(const Surface& surface, const contact::Ridge& ridge) {
   constexpr double kFlat = 0.985;  // cosine of 10 degrees
   const auto at = [&surface](int point) { return Vec3(surface.x.col(point)); };

@@ -36,6 +36,10 @@ class Surfaces {
   std::vector<Eigen::Matrix3Xd> rods_;
 };
 
+/// Distance [m] from a point to the nearest of the triangles whose boxes are within `far` of it; infinite if none is.
+/// Beyond `far` others may be nearer.
+double distance_to_triangles(const Surface& surface, const Vec3& point, double far);
+
 /// Between the normals of the two triangles beside a ridge; none where they lie in one plane, but for 10 degrees, or in
 /// a valley: points meet these.
 std::optional<Vec3> outward_of_ridge(const Surface& surface, const contact::Ridge& ridge);

@@ -412,7 +412,8 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
     if (sound(next)) warn_of_snap(from, next.at.state, t);
     return next;
   };
-  if (!sound(end) || jumped({model, ramp, state, 0.0, end.at.state, 1.0})) {
+  const bool elsewhere = accepted(end.report.status) && jumped({model, ramp, state, 0.0, end.at.state, 1.0});
+  if (!sound(end) || elsewhere) {
     Iterate on{state, 0.0};
     for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
       Reached next = path_step(model, memory, ramp, on);
@@ -443,15 +444,14 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
       Reached minimum = go(on.state, 1.0, rules);
       add_effort(minimum.report, spent);
-      const Iterate start{state, 0.0};
       if (accepted(minimum.report.status)) {
         end = std::move(minimum);
         warn_of_snap(on, end.at.state, 1.0);
       } else if (!accepted(end.report.status)) {
         end = std::move(minimum);
-      } else if (jumped({model, ramp, state, 0.0, end.at.state, 1.0})) {
+      } else if (elsewhere) {
         snaps.clear();  // of parts that led nowhere
-        if (!warn_of_snap(start, end.at.state, 1.0)) {
+        if (!warn_of_snap({state, 0.0}, end.at.state, 1.0)) {
           end.report.status = Status::path_lost;
           end.report.detail = moved_most(model, state, end.at.state).name +
                               ": the equilibrium that was found is none that its loads lead to";
