@@ -127,7 +127,7 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
   const auto bends = [&model](int pair) {
     return model.pairs[pair].a.kind == Collider::Kind::rod || model.pairs[pair].b.kind == Collider::Kind::rod;
   };
-  const std::string finer_mesh =
+  const auto* finer_mesh =
       "an edge lies between nodes of the mesh that it bends: give this smaller triangles there, or take a round edge";
   const auto shorter_steps = [&](int pair) {
     return std::string("take shorter steps") + (bends(pair) ? ", give the rod more sections" : "") +
@@ -138,7 +138,7 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
                   .where = "contact",
                   .message = name_of_pair(model, contact.deepest_pair) + " overlap by " +
                              three_digits(1e3 * contact.penetration) + " mm",
-                  .remedy = contact.between_nodes ? finer_mesh : shorter_steps(contact.deepest_pair),
+                  .remedy = contact.between_nodes ? std::string(finer_mesh) : shorter_steps(contact.deepest_pair),
                   .value = contact.penetration,
                   .limit = limit,
                   .unit = "m"});
