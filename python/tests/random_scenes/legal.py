@@ -183,10 +183,20 @@ def bundle(random_: random.Random, scene: Scene, duration: float) -> None:
         scene["couplings"] = [{"tie": {"rod": "r0", "at": s, "other": "r1", "other_at": s, "along": ["y", "z"]}}]
 
 
+def inner_radius(body: dict[str, Any]) -> float:
+    """[m] of the largest ball within a body."""
+    if "box" in body:
+        return float(0.5 * min(body["box"]["size"]))
+    shape = next(body[kind] for kind in ("sphere", "capsule", "cylinder") if kind in body)
+    return float(min(shape["radius"], 0.5 * shape["length"]) if "cylinder" in body else shape["radius"])
+
+
 def extent(scene: Scene) -> float:
-    """[m] of the box about paths of rods and centres of bodies: the scene's size, or less."""
+    """[m] of the box about paths of rods and balls within bodies: the scene's size, or less."""
     points = [p for rod in scene.get("rods", {}).values() for p in rod["path"]]
-    points += [body["pose"]["translate"] for body in scene.get("bodies", {}).values() if "pose" in body]
+    for body in scene.get("bodies", {}).values():
+        if "pose" in body:
+            points += [[x + side * inner_radius(body) for x in body["pose"]["translate"]] for side in (-1, 1)]
     return math.dist(*([f(axis) for axis in zip(*points)] for f in (min, max))) if points else 0.0
 
 
@@ -221,7 +231,7 @@ def legal(random_: random.Random) -> tuple[Scene, Judge]:
             told.append(f"converged with constraints off by {summary['largest_violation_m']:.3g} m")
         deep = summary.get("contact", {}).get("deepest_penetration_m", 0.0)
         # One linearisation may leave 1e-4 of the scene's size (docs/contact.md).
-        allowed = max(1e-5, 1.1e-4 * extent(scene)) if linearised else 1e-5  # (its size counts how thick rods are)
+        allowed = max(1e-5, 1.1e-4 * extent(scene)) if linearised else 1e-5  # (rods' radii count, too)
         if deep > allowed and "penetration" not in codes and "overlap_at_start" not in codes:
             told.append(f"overlaps of {1e3 * deep:.3g} mm without a word")
         for row in rows:

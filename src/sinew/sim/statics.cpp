@@ -214,6 +214,15 @@ SetFree set_free(const Between& own, double t) {
 }
 constexpr double kFree = 1e-3;  ///< of the elastic energy: what steps of a load leave undecided
 
+/// [J] The most that contacts put in as they move apart what overlaps where the scene begins.
+double put_in_by_contacts(const Between& own) {
+  if (own.from.grid != 0 || own.from.time != 0.0) return 0.0;
+  double sum = 0.0;
+  for (const ContactState& contact : own.to.contacts)
+    sum += std::abs(contact.force.dot(contact.normal)) * own.model.pairs[contact.pair].depth;
+  return sum;
+}
+
 /// Whether a step between equilibria has gone over to others than those that go on from where it began: down, or up,
 /// where nothing brings it.
 bool jumped(const Between& own) {
@@ -221,7 +230,8 @@ bool jumped(const Between& own) {
   constexpr double kBeyond = 0.03;  // of the elastic energy: the work of a long, curved way is not known better
   if (moved_most(own.model, own.from, own.to).far <= kNear * own.model.size) return false;
   const SetFree set = set_free(own, 0.5 * (own.t_from + own.t_to));  // (trapezium, as loads that grow)
-  return std::abs(set.free) > kBeyond * set.elastic;
+  const double from_nowhere = -set.free - put_in_by_contacts(own);
+  return std::max(set.free, from_nowhere) > kBeyond * set.elastic;
 }
 
 /// Warning `snapped` where a body that was let go has set energy free. It was so with the loads of the end, which do
