@@ -41,9 +41,8 @@ inline Part determinant(const Mat3& F, Derivatives wanted) {
   return J;
 }
 
-/// w += first (J - 1) + second / 2 (J - 1)^2.
-inline void add_dilatation(const Mat3& F, double first, double second, Derivatives wanted, Part& w) {
-  const Part J = determinant(F, wanted == Derivatives::none ? wanted : Derivatives::first);
+/// w += first (J - 1) + second / 2 (J - 1)^2, with J and its first derivative.
+inline void add_dilatation(const Mat3& F, const Part& J, double first, double second, Derivatives wanted, Part& w) {
   const double e = J.value - 1.0;
   w.value += (first + 0.5 * second * e) * e;
   if (wanted == Derivatives::none) return;
@@ -53,6 +52,10 @@ inline void add_dilatation(const Mat3& F, double first, double second, Derivativ
   const Vec9 cof = J.first.reshaped();
   w.second += (second * cof) * cof.transpose();
   add_determinant_second(F, slope, w.second);
+}
+inline void add_dilatation(const Mat3& F, double first, double second, Derivatives wanted, Part& w) {
+  const Part J = determinant(F, wanted == Derivatives::none ? wanted : Derivatives::first);
+  add_dilatation(F, J, first, second, wanted, w);
 }
 
 /// log J for J > 0. Near rest from the strain, J^2 = det(I + 2 E): its error is a fraction of the strain, not of 1.

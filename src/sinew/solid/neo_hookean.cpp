@@ -6,8 +6,10 @@
 
 namespace sinew::solid {
 
-Part NeoHookean::shape(const Mat3& F, Derivatives wanted) const {
-  Part w(wanted);
+namespace {
+
+/// w, in a Part that is 0, with J = det F and its first derivative.
+void set_shape(const Lame& moduli, const Mat3& F, const Part& J, Derivatives wanted, Part& w) {
   const double mu = 4.0 / 3.0 * moduli.mu;
   const double I = F.squaredNorm(), part = 1.0 / (I + 1.0);
   w.value = 0.5 * mu * (I - 3.0 - std::log1p(0.25 * (I - 3.0)));
@@ -17,10 +19,19 @@ Part NeoHookean::shape(const Mat3& F, Derivatives wanted) const {
     w.second = (2.0 * mu * part * part * f) * f.transpose();
     w.second.diagonal().array() += mu * (1.0 - part);
   }
-  add_dilatation(F, -0.75 * mu, 5.0 / 6.0 * moduli.mu, wanted, w);
-  return w;
+  add_dilatation(F, J, -0.75 * mu, 5.0 / 6.0 * moduli.mu, wanted, w);
 }
 
+}  // namespace
+
+Part NeoHookean::shape(const Mat3& F, Derivatives wanted) const { return parts(F, wanted).shape; }
+
 Part NeoHookean::dilatation(const Mat3& F, Derivatives wanted) const { return determinant(F, wanted); }
+
+Parts NeoHookean::parts(const Mat3& F, Derivatives wanted) const {
+  Parts both{Part(wanted), determinant(F, wanted)};
+  set_shape(moduli, F, both.dilatation, wanted, both.shape);
+  return both;
+}
 
 }  // namespace sinew::solid

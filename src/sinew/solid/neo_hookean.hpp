@@ -19,6 +19,8 @@ struct NeoHookean {
 
   Part shape(const Mat3& F, Derivatives wanted) const;
   Part dilatation(const Mat3& F, Derivatives wanted) const;
+  /// Both, with one determinant.
+  Parts parts(const Mat3& F, Derivatives wanted) const;
   Volumetric volumetric(double v) const { return quadratic(moduli.lambda, v - 1.0); }
   Lame lame() const { return moduli; }
 };
