@@ -84,6 +84,12 @@ double radius_at(const Profile& profile, double s) {
   return std::get<GivenPart>(part.made).radius;
 }
 
+double inner_radius_at(const Profile& profile, double s) {
+  const Part& part = part_at(profile, s);
+  if (const auto* solid = std::get_if<SolidPart>(&part.made)) return least_outer_radius(shape_at(part, *solid, s));
+  return std::get<GivenPart>(part.made).radius;
+}
+
 SectionStress stress_at(const Profile& profile, double s, const Vec6& internal) {
   const Part& part = part_at(profile, s);
   if (const auto* solid = std::get_if<SolidPart>(&part.made))

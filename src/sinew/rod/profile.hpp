@@ -38,7 +38,9 @@ const Part& part_at(const Profile& profile, double s);
 Mat6 stiffness_at(const Profile& profile, double s);
 Mat6 damping_at(const Profile& profile, double s);
 LineInertia inertia_at(const Profile& profile, double s);
+/// Of the circle about a cross-section, and of the one within it [m].
 double radius_at(const Profile& profile, double s);
+double inner_radius_at(const Profile& profile, double s);
 
 /// Stresses under internal moments and forces; of a given part, those of a circle of its radius.
 SectionStress stress_at(const Profile& profile, double s, const Vec6& internal);

@@ -175,6 +175,11 @@ double outer_radius(const Shape& shape) {
   return std::max(extents.y, extents.z);
 }
 
+double least_outer_radius(const Shape& shape) {
+  const HalfExtents extents = std::visit([](const auto& one) { return half_extents(one); }, shape);
+  return std::min(extents.y, extents.z);
+}
+
 Shape blend(const Shape& a, const Shape& b, double t) {
   return std::visit([&]<class Kind>(const Kind& from) { return Shape(blend_of(from, std::get<Kind>(b), t)); }, a);
 }

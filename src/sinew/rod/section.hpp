@@ -72,8 +72,9 @@ struct SectionStress {
 /// force. For ellipse and rectangle bending and torsion peak at different points, and it is a bound.
 SectionStress section_stress(const Shape& shape, const Vec6& internal);
 
-/// Largest distance of the rim from the axis [m].
+/// Largest and least distance of the outer rim from the axis [m].
 double outer_radius(const Shape& shape);
+double least_outer_radius(const Shape& shape);
 
 /// The shape at t in [0, 1] of a linear taper: a at 0, b at 1. Two different kinds: std::bad_variant_access.
 Shape blend(const Shape& a, const Shape& b, double t);

@@ -5,6 +5,7 @@
 
 #include "sinew/error/digits.hpp"
 #include "sinew/sim/contact_places.hpp"
+#include "sinew/sim/held_contact.hpp"
 #include "sinew/sim/internal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/places.hpp"
@@ -22,6 +23,7 @@ namespace {
 constexpr double kBeyondBearing = 1e6;         ///< times Model::bearing
 constexpr double kLinearisedResidual = 0.05;   ///< of the largest force: of a step of `newton: n`
 constexpr double kLinearisedViolation = 1e-3;  ///< of the scene's size: the same
+constexpr double kMissedLaws = 1e-9;           ///< of the largest force: the same, of laws of contact
 constexpr double kLinearisedOff = 0.05;        ///< of the motion: how far it may end beside a converged step
 
 /// Collects the warnings of one step.
@@ -144,15 +146,30 @@ void assess_contacts(const Model& model, bool fixed, const StepReport& step, War
                   .unit = "m"});
   }
   const double left = std::max({contact.left.complementarity, contact.left.cone, contact.left.dissipation});
-  if (fixed && contact.unsolved > 0) {
+  if (fixed && contact.unsolved > 0 && left > kMissedLaws) {
     warnings.add({.code = "contact_unsolved",
                   .where = "contact",
                   .message = "forces of contacts miss Signorini's and Coulomb's laws by " + three_digits(left) +
                              " of the largest",
                   .remedy = "take shorter steps, or leave `newton` out",
                   .value = left,
-                  .limit = kCoulombTolerance});
+                  .limit = kMissedLaws});
   }
+}
+
+void assess_held(const StepContext& context, const ContactRoom& room, const State& next, Warnings& warnings) {
+  const Model& model = context.model;
+  const double limit = 1e-6 * model.size;
+  const HeldInside found = held_inside(context, room, next);
+  if (!(found.depth > limit)) return;
+  warnings.add({.code = "held_in_obstacle",
+                .where = "contact",
+                .message = name_of_pair(model, found.pair) + ": nodes that are held lie up to " +
+                           three_digits(1e3 * found.depth) + " mm in the obstacle, and no contact stops them",
+                .remedy = "move what holds them less far, or hold fewer nodes",
+                .value = found.depth,
+                .limit = limit,
+                .unit = "m"});
 }
 
 /// "take shorter steps, or leave `newton: 1` out".
@@ -263,6 +280,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
   assess_cables(model, next, warnings);
   assess_couplings(model, next, warnings);
   assess_contacts(model, fixed, report, warnings);
+  assess_held(context, here.contacts(), next, warnings);
   if (fixed) assess_linearisation(model, report, warnings);
   assess_redundancy(model, here, warnings);
   assess_give(model, here.reduced(), warnings);
@@ -349,10 +367,8 @@ Loose loose_energy(const Model& model, const State& state) {
 }  // namespace
 
 bool lifts_apart(const Model& model, const State& iterate, const ContactRoom& room) {
-  for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
-    const double at_start = model.pairs[iterate.contacts[i].pair].depth;
-    if (room.gaps[i] < -1e-6 * model.size && room.gaps[i] >= -at_start) return true;
-  }
+  for (std::size_t i = 0; i < iterate.contacts.size(); ++i)
+    if (overlaps_since_the_start(model, iterate.contacts[i], room.gaps[i])) return true;
   return false;
 }
 

@@ -157,16 +157,29 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
   }
 }
 
+namespace {
+
+bool sticks(const Touch& touch, double friction) {
+  const Vec3 force = touch.frame.transpose() * touch.force;
+  return force.tail<2>().norm() < (1.0 - 1e-6) * friction * force[0];
+}
+
+bool bends_on_obstacle(const ContactState& own) {
+  const auto bends = [](const ContactSide& side) { return side.on.kind == Kind::rod || side.on.kind == Kind::solid; };
+  const auto stands = [](const ContactSide& side) { return side.on.kind == Kind::obstacle; };
+  return (bends(own.a) && stands(own.b)) || (bends(own.b) && stands(own.a));
+}
+
+}  // namespace
+
 int ContactForces::held(const ContactRoom& room) const {
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < touching_.size(); ++i) {
     const Touch& touch = room.touches[static_cast<std::size_t>(touching_[i])];
-    const Vec3 force = touch.frame.transpose() * touch.force;
-    if (!(force[0] > 0.0)) continue;
+    if (!(touch.force.dot(touch.nearest.normal) > 0.0)) continue;
     const auto k = static_cast<Eigen::Index>(3 * i);
     rows.push_back(k);
-    const double limit = problem_.mu[static_cast<Eigen::Index>(i)] * force[0];
-    if (force.tail<2>().norm() < (1.0 - 1e-6) * limit) rows.insert(rows.end(), {k + 1, k + 2});
+    if (sticks(touch, problem_.mu[static_cast<Eigen::Index>(i)])) rows.insert(rows.end(), {k + 1, k + 2});
   }
   if (rows.empty()) return 0;
   const Eigen::MatrixXd D = problem_.D(rows, rows);
@@ -177,15 +190,23 @@ int ContactForces::held(const ContactRoom& room) const {
 bool ContactForces::conserve(const StepContext& context, const State& iterate, const ContactRoom& room, double scale) {
   constexpr double kPresses = 1e-8;
   if (!context.model.rubbing.empty()) return false;
-  const auto bends = [](const ContactSide& side) { return side.on.kind == Kind::rod || side.on.kind == Kind::solid; };
-  const auto stands = [](const ContactSide& side) { return side.on.kind == Kind::obstacle; };
   return std::all_of(room.playing.begin(), room.playing.end(), [&](int number) {
     const ContactState& own = iterate.contacts[number];
     const Touch& touch = room.touches[static_cast<std::size_t>(number)];
     const double force = touch.force.dot(touch.nearest.normal);
     if (force == 0.0) return true;
-    return force > kPresses * scale && context.model.pairs[own.pair].friction == 0.0 &&
-           ((bends(own.a) && stands(own.b)) || (bends(own.b) && stands(own.a)));
+    return force > kPresses * scale && context.model.pairs[own.pair].friction == 0.0 && bends_on_obstacle(own);
+  });
+}
+
+bool ContactForces::stick_on_obstacles(const StepContext& context, const State& iterate, const ContactRoom& room) {
+  if (!context.model.rubbing.empty()) return false;
+  return std::all_of(room.playing.begin(), room.playing.end(), [&](int number) {
+    const ContactState& own = iterate.contacts[number];
+    const Touch& touch = room.touches[static_cast<std::size_t>(number)];
+    if (!(touch.force.dot(touch.nearest.normal) > 0.0)) return true;
+    const double friction = context.model.pairs[own.pair].friction;
+    return bends_on_obstacle(own) && (friction == 0.0 || sticks(touch, friction));
   });
 }
 

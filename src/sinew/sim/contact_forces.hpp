@@ -39,6 +39,8 @@ class ContactForces {
   /// Whether the tangent has all that contacts which press do, and each of them holds: frictionless, on obstacles, by
   /// rods or solids, with forces that are no rounding beside `scale` [N].
   static bool conserve(const StepContext& context, const State& iterate, const ContactRoom& room, double scale);
+  /// Whether contacts which press do so on obstacles, by rods or solids, and those with friction stick.
+  static bool stick_on_obstacles(const StepContext& context, const State& iterate, const ContactRoom& room);
   /// Finds the forces that go with the solution so far, and adds to it what they change. Where the rows are known to
   /// move by e [m] `beyond` J dx (sim/contact_correction), it begins with the forces that it found last.
   void solve(const StepContext& context, const State& iterate, const ContactRoom& room, std::vector<FreeMotion>& free,

@@ -45,12 +45,6 @@ Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
   return own;
 }
 
-/// How far a point, in the axes of a rigid shape, with what is within `radius` of it is outside that [m]; negative
-/// inside.
-double gap_to_shape(const contact::Shape& shape, const Vec3& local, double radius) {
-  return contact::nearest(contact::point_at(local, radius), contact::nearest_part(shape, local)).gap;
-}
-
 /// Distance of two parts less their thickness; below zero only where they overlap now, wherever they came from: past
 /// the rim of a triangle it has no inside, and the plane of a face ends with its shape.
 double separation(const StepMotion& motion, const ContactState& own, double t) {

@@ -54,6 +54,10 @@ const contact::Mesh* mesh_of(const Model& model, const Collider& own) {
   return std::get_if<contact::Mesh>(&shape_of(model, own));
 }
 
+double gap_to_shape(const contact::Shape& shape, const Vec3& local, double radius) {
+  return contact::nearest(contact::point_at(local, radius), contact::nearest_part(shape, local)).gap;
+}
+
 double stands_out(const Model& model, const Collider& object) {
   const auto* cylinder = is_rigid(object) ? std::get_if<contact::Cylinder>(&shape_of(model, object)) : nullptr;
   return cylinder ? contact::kPrismStandsOut * cylinder->radius : 0.0;

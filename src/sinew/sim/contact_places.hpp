@@ -56,6 +56,10 @@ bool is_shape(const Model& model, const Collider& own);
 /// Whether both of two are: contact/meeting is for these.
 bool are_shapes(const Model& model, const PairModel& pair);
 
+/// How far a point, in the axes of a rigid shape that is no mesh, with what is within `radius` of it is outside that
+/// [m]; negative inside.
+double gap_to_shape(const contact::Shape& shape, const Vec3& local, double radius);
+
 /// By how much the edges of the prism that stands for a cylinder are outside it [m]; 0 of all else.
 double stands_out(const Model& model, const Collider& object);
 

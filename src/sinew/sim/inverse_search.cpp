@@ -29,7 +29,9 @@ void check(const Model& model, const Goal& goal) {
 /// Of a search, and of one for a step in time, whose next one goes on.
 constexpr int kMostTurns = 60, kMostTurnsInMotion = 12;
 /// Iterations of Newton, in multiples of `newton.limit`, after which no search turns once more.
-constexpr int kMostOfSearch = 40;
+constexpr int kMostOfSearch = 16;
+/// And after which a trial of one, an equilibrium, is given up.
+constexpr int kMostOfTrial = 4;
 /// First region of trust, as a part of the scene's size.
 constexpr double kFirstReach = 0.2;
 /// How far, of the scene's size, commands may move effectors in a step by what they do at rest.
@@ -293,10 +295,11 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   agree(model, memory, state, time, found.spent.times, found.told);
   // Where friction remembers the way, every trial goes the whole of it.
   const bool remembers = !model.pairs.empty() || !model.rubbing.empty();
-  const Way way{
-      [&](const Command& told, const State& near) { return equilibrium_step(model, workspace, told, near, time); },
-      remembers ? &state : nullptr, time};
-  found.at = way.make(found.told, state);
+  const Way way{[&](const Command& told, const State& near) {
+                  return equilibrium_step(model, workspace, told, near, time, kMostOfTrial);
+                },
+                remembers ? &state : nullptr, time};
+  found.at = equilibrium_step(model, workspace, found.told, state, time);
   found.add(found.at.report);
   if (!accepted(found.at.report.status)) {
     found.tell(found.at.report);
@@ -305,7 +308,7 @@ StepReport inverse_equilibrium(const Model& model, Workspace& workspace, const G
   search(model, memory, way, found);
   if (!remembers) {
     // The whole way in one, as whoever is told these commands goes it.
-    StepResult whole = way.make(found.told, state);
+    StepResult whole = equilibrium_step(model, workspace, found.told, state, time);
     found.add(whole.report);
     if (accepted(whole.report.status) &&
         inverse.cost(model, whole.next) <= inverse.cost(model, found.at.next) * (1.0 + 1e-6) + 1e-8)

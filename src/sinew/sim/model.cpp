@@ -227,6 +227,36 @@ void measure(Model& model) {
   model.middle = 0.5 * (lower + upper);
 }
 
+/// Contact takes cross-sections as round, of the radius of the circle about them.
+void warn_of_flat_rods(Model& model) {
+  constexpr double kRound = 0.05;
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    const RodModel& rod = model.rods[i];
+    const Collider own{Collider::Kind::rod, static_cast<int>(i)};
+    if (std::none_of(model.pairs.begin(), model.pairs.end(),
+                     [&own](const PairModel& pair) { return pair.a == own || pair.b == own; }))
+      continue;
+    double most = 0.0, radius = 0.0;
+    for (const double s : rod.touching) {
+      const double outer = rod::radius_at(rod.rod.profile, s), more = outer - rod::inner_radius_at(rod.rod.profile, s);
+      if (more > kRound * outer && more > most) {
+        most = more;
+        radius = outer;
+      }
+    }
+    if (most > 0.0)
+      model.warnings.push_back({.code = "round_in_contact",
+                                .where = "rods." + rod.name,
+                                .message = "its cross-section is not round, but contact takes it for a circle of " +
+                                           text(1e3 * radius) + " mm radius, up to " + text(1e3 * most) +
+                                           " mm outside the true one",
+                                .remedy = "move what it meets nearer by that much, or make it a solid",
+                                .value = most,
+                                .limit = kRound * radius,
+                                .unit = "m"});
+  }
+}
+
 }  // namespace
 
 Model build(const Scene& scene, const MeshReader& read_mesh) {
@@ -336,6 +366,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   }
   for (EffectorModel& effector : model.effectors) effector.start = effector_value(model, start, effector);
   warn_of_units(model);
+  warn_of_flat_rods(model);
   warn_of_tables(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();

@@ -27,8 +27,6 @@ constexpr int kMostDetours = 200;
 constexpr int kMostIterations = 12, kWantedIterations = 4;
 /// Of its load, brought on by parts where contacts make kinks in a path.
 constexpr double kSmallestPart = 1.0 / 64.0, kSettledPart = 1.0 / 16.0;
-/// Iterations of a quasi-static step, in multiples of `newton.limit`, after which no further part of it is tried.
-constexpr int kMaxIterationsFactor = 64;
 
 /// What is prescribed along a path: all of it grows linearly from one end to the other.
 struct Ramp {
@@ -361,7 +359,7 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
 }
 
 StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
-                            double time) {
+                            double time, int most) {
   const bool begins = state.grid == 0 && state.time == 0.0;
   const Ramp ramp{begins ? nothing(model) : command_of(model, state),
                   command,
@@ -397,7 +395,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   };
 
   NewtonRules rules = whole_steps(model);
-  const int iteration_limit = kMaxIterationsFactor * rules.limit;
+  const int iteration_limit = most * rules.limit;
   rules.limit = std::min(rules.limit, kMostIterations);
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;

@@ -20,8 +20,8 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
 /// the run begins). Newton goes there at once; where it does not get there, or ends at an equilibrium that is unstable
 /// or inside out, it follows the path, and where the path turns back or gets unstable, it leaves it for the nearest
 /// minimum under all loads: the jump that a real body would make. With contacts, which make kinks in a path, loads are
-/// brought on by parts instead.
+/// brought on by parts instead. After `most` iterations, in multiples of `newton.limit`, no further part is tried.
 StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
-                            double time);
+                            double time, int most = 64);
 
 }  // namespace sinew

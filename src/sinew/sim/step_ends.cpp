@@ -118,7 +118,8 @@ void finish(const StepContext& context, State& next, Linearization& here) {
   for (std::size_t i = 0; i < next.actuators.size(); ++i)
     next.actuators[i] = motor_force(model, context.command, next, static_cast<int>(i));
   next.loads = context.command.loads;
-  const Work done = work(context, next, here.contacts().touches);
+  Work done = work(context, next, here.contacts().touches);
+  if (context.rate > 0.0) done += work_of_lifting(model, next, here.contacts());
   next.energies.work += done.mean();
   next.energies.work_bound += done.bound();
   for (std::size_t i = 0; i < next.rods.size(); ++i) {

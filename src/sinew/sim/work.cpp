@@ -200,4 +200,16 @@ Work work(const StepContext& context, const State& next, const std::vector<Touch
   return sum;
 }
 
+Work work_of_lifting(const Model& model, const State& next, const ContactRoom& room) {
+  Work sum;
+  if (room.touches.size() != next.contacts.size()) return sum;
+  for (std::size_t i = 0; i < next.contacts.size(); ++i) {
+    if (!overlaps_since_the_start(model, next.contacts[i], room.gaps[i])) continue;
+    const Touch& touch = room.touches[i];
+    const double way = std::min(touch.u[0], 0.0) - room.gaps[i], force = touch.force.dot(touch.nearest.normal);
+    if (force > 0.0 && way > 0.0) sum += Work{force * way, force * way};
+  }
+  return sum;
+}
+
 }  // namespace sinew

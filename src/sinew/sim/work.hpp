@@ -48,4 +48,13 @@ struct Work {
 /// `touches` are the contacts of the end. With its mean `energy_balance` is whole: what is missing has been dissipated.
 Work work(const StepContext& context, const State& next, const std::vector<Touch>& touches);
 
+/// Whether a contact that has this gap [m] at the start of a step is of what has overlapped since the scene began.
+inline bool overlaps_since_the_start(const Model& model, const ContactState& contact, double gap) {
+  return gap < -1e-6 * model.size && gap >= -model.pairs[contact.pair].depth;
+}
+
+/// Work of contacts, as they are at the end of a step in time, that move apart what has overlapped since the scene
+/// began.
+Work work_of_lifting(const Model& model, const State& next, const ContactRoom& room);
+
 }  // namespace sinew
