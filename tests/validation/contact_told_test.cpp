@@ -19,7 +19,7 @@ TEST(ContactTold, held_nodes_in_an_obstacle) {
   EXPECT_NEAR(told->time, 0.16, 1e-9);  // (at 0.15 s it touches)
   EXPECT_NE(told->message.find("floor and beam: nodes that are held lie up to 5 mm"), std::string::npos)
       << told->message;
-  // The same with what comes to it, and with a hull; and nothing where it stays outside.
+  // The same with what comes to it, and with a mesh; and nothing where it stays outside, or goes with the beam.
   for (const char* shape : {"{plane: {point: [0, 0, -15 mm], normal: [0, 0, 1]}, frame: lift}",
                             "{box: {size: [300 mm, 300 mm, 40 mm]}, pose: {translate: [0, 0, -35 mm]}, frame: lift}",
                             "{mesh: {file: cube.vtk, scale: 0.3}, pose: {translate: [-150 mm, -150 mm, -315 mm]}, "
@@ -35,6 +35,17 @@ TEST(ContactTold, held_nodes_in_an_obstacle) {
       ASSERT_EQ(of_it != nullptr, inside);
       if (inside) EXPECT_NEAR(of_it->value, 5e-3, 1e-6);
     }
+  }
+}
+
+TEST(ContactTold, held_nodes_that_go_with_an_obstacle) {
+  const std::string box = "{box: {size: [4 mm, 40 mm, 40 mm]}, pose: {translate: [-1 mm, 0, -32 mm]}, frame: ";
+  for (const auto& [frame, told] : {std::pair{"hand", false}, {"stays", true}}) {
+    SCOPED_TRACE(frame);
+    const RecordedRun run =
+        fault("held_in_floor", {"obstacles.floor=" + box + frame + "}", "frames.stays={}", "time.duration=20 ms"});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_EQ(run.warning("held_in_obstacle") != nullptr, told);
   }
 }
 

@@ -49,10 +49,12 @@ TEST(Faults, tendons_four) {
 // Three pairs of opposite tendons contradict each other by little in a short part of a step: Newton went anywhere, and
 // `max_iterations` was what the run said.
 TEST(Faults, tendons_contradict) {
-  const RecordedRun run = fault("tendons_contradict");
-  ASSERT_FALSE(run.done());
-  EXPECT_EQ(run.failure().status, Status::inconsistent) << run.why();
-  EXPECT_THAT(run.failure().detail, HasSubstr("actuators.t00"));
+  for (const char* name : {"tendons_contradict", "tendons_contradict_on_the_path"}) {
+    const RecordedRun run = fault(name);
+    ASSERT_FALSE(run.done());
+    EXPECT_EQ(run.failure().status, Status::inconsistent) << run.why();
+    EXPECT_THAT(run.failure().detail, HasSubstr("actuators.t00"));
+  }
 }
 
 // Three rods welded side by side, without shear: `singular` without a place.

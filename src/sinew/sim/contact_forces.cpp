@@ -164,6 +164,9 @@ bool sticks(const Touch& touch, double friction) {
   return force.tail<2>().norm() < (1.0 - 1e-6) * friction * force[0];
 }
 
+/// What is closed without a force holds one way.
+bool is_open(const Model& model, const Touch& touch) { return touch.u[0] > 1e-6 * model.size; }
+
 bool bends_on_obstacle(const ContactState& own) {
   const auto bends = [](const ContactSide& side) { return side.on.kind == Kind::rod || side.on.kind == Kind::solid; };
   const auto stands = [](const ContactSide& side) { return side.on.kind == Kind::obstacle; };
@@ -194,7 +197,7 @@ bool ContactForces::conserve(const StepContext& context, const State& iterate, c
     const ContactState& own = iterate.contacts[number];
     const Touch& touch = room.touches[static_cast<std::size_t>(number)];
     const double force = touch.force.dot(touch.nearest.normal);
-    if (force == 0.0) return true;
+    if (force == 0.0) return is_open(context.model, touch);
     return force > kPresses * scale && context.model.pairs[own.pair].friction == 0.0 && bends_on_obstacle(own);
   });
 }
@@ -204,7 +207,7 @@ bool ContactForces::stick_on_obstacles(const StepContext& context, const State& 
   return std::all_of(room.playing.begin(), room.playing.end(), [&](int number) {
     const ContactState& own = iterate.contacts[number];
     const Touch& touch = room.touches[static_cast<std::size_t>(number)];
-    if (!(touch.force.dot(touch.nearest.normal) > 0.0)) return true;
+    if (!(touch.force.dot(touch.nearest.normal) > 0.0)) return is_open(context.model, touch);
     const double friction = context.model.pairs[own.pair].friction;
     return bends_on_obstacle(own) && (friction == 0.0 || sticks(touch, friction));
   });

@@ -32,19 +32,24 @@ HeldInside held_inside(const StepContext& context, const ContactRoom& room, cons
   const Model& model = context.model;
   const auto moves = [&model](int frame) { return frame >= 0 && model.scene.frames[frame].second.motion.has_value(); };
   HeldInside deepest;
+  std::vector<Placement> frames;
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
     const bool first = model.pairs[i].a.kind == Kind::solid;
     const Collider& solid = first ? model.pairs[i].a : model.pairs[i].b;
     const Collider& obstacle = first ? model.pairs[i].b : model.pairs[i].a;
     if (solid.kind != Kind::solid || obstacle.kind != Kind::obstacle) continue;
     const SolidModel& own = model.solids[solid.number];
-    const bool obstacle_moves = moves(model.obstacles[obstacle.number].frame);
-    const auto carried = [&](int node) { return moves(own.carrier[static_cast<std::size_t>(node)]); };
-    if (!obstacle_moves && std::none_of(own.skin.used.begin(), own.skin.used.end(), carried)) continue;
-    const std::vector<Placement> frames = frames_at(model, context.start.time + context.h);
+    const int frame = model.obstacles[obstacle.number].frame;
+    const auto carried = [&](int node) {
+      const int carrier = own.carrier[static_cast<std::size_t>(node)];
+      return carrier != frame && (moves(carrier) || moves(frame));
+    };
+    const auto meets = [&](int node) { return own.body.unknown.col(node).maxCoeff() < 0 && carried(node); };
+    if (std::none_of(own.skin.used.begin(), own.skin.used.end(), meets)) continue;
+    if (frames.empty()) frames = frames_at(model, context.start.time + context.h);
     const contact::Pose pose = Moment{model, next, frames, room.now}.pose(obstacle);
     for (const int node : own.skin.used) {
-      if (own.body.unknown.col(node).maxCoeff() >= 0 || !(obstacle_moves || carried(node))) continue;
+      if (!meets(node)) continue;
       const Vec3 local = pose.R.transpose() * (next.solids[solid.number].x.col(node) - pose.p);
       const double depth = depth_in(shape_of(model, obstacle), local);
       if (depth > deepest.depth) deepest = {static_cast<int>(i), depth};

@@ -11,8 +11,8 @@ struct HeldInside {
   double depth = 0.0;  ///< [m]
 };
 
-/// At the end of a step, of nodes and obstacles that frames move: how deep what holds them has carried nodes of a
-/// solid, all of whose coordinates are held, into an obstacle of one of the solid's pairs.
+/// At the end of a step, of nodes and obstacles that a frame moves towards each other: how deep what holds them has
+/// carried nodes of a solid, all of whose coordinates are held, into an obstacle of one of the solid's pairs.
 HeldInside held_inside(const StepContext& context, const ContactRoom& room, const State& next);
 
 }  // namespace sinew

@@ -103,6 +103,7 @@ struct Found {
   StepResult at;
   StepReport spent;
   bool short_of = false;   ///< commands that would come nearer lead nowhere: no step or equilibrium was found
+  bool gave_up = false;    ///< of them, some would have been too much work to follow
   bool cut_short = false;  ///< commands that may come nearer were not looked for: it would have been too much work
 
   void add(const StepReport& report) { add_effort(report, spent); }
@@ -130,6 +131,7 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
   double reach = kFirstReach * model.size * 1e3, farthest = INFINITY;
   bool settled = false, came_nearer = false;
   const int most = moves ? kMostTurnsInMotion : kMostTurns;
+  const int before = found.spent.newton, limit = model.scene.newton.limit;
   for (int turn = 0; turn < most && !found.cut_short; ++turn) {
     inverse.reach = reach;
     const State& start = way.start ? *way.start : found.at.next;
@@ -141,7 +143,7 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
     if (!ok) break;
     inverse.weigh_limits();
     const double cost = inverse.cost(model, found.at.next), promised = cost - inverse.promised();
-    found.cut_short = inverse.cut_short() || found.spent.newton > kMostOfSearch * model.scene.newton.limit;
+    found.cut_short = inverse.cut_short() || found.spent.newton - before > kMostOfSearch * limit;
     settled = !found.cut_short && inverse.motion() <= Inverse::kSettled && inverse.settled(found.told, model) &&
               promised <= kNoGain;
     if (settled) break;
@@ -157,6 +159,7 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
     if (!leads) {
       farthest = 0.5 * moved;
       found.short_of = true;
+      found.gave_up |= !moves && trial.report.newton >= kMostOfTrial * limit;
     }
     if (better) {
       if (cost - there > 0.75 * promised) reach = std::min(std::max(reach, 2.0 * moved), farthest);
@@ -172,6 +175,7 @@ bool search(const Model& model, Memory& memory, const Way& way, Found& found) {
     }
   }
   inverse.reach = INFINITY;
+  found.cut_short |= !settled && found.gave_up;
   return settled || came_nearer;
 }
 

@@ -287,9 +287,9 @@ bool Linearization::unstable() {
 
 std::optional<bool> Linearization::unstable_between_contacts() {
   if (!stability_known()) return {};
-  if (contact_forces_.conserve(*context_, *iterate_, contacts_, scale_)) return loose() > 0;
+  if (ContactForces::conserve(*context_, *iterate_, contacts_, scale_)) return loose() > 0;
   // Friction holds what sticks, at most. (How it holds what rolls on it is not in the tangent to second order.)
-  if (contact_forces_.stick_on_obstacles(*context_, *iterate_, contacts_) && loose() > 0) return true;
+  if (ContactForces::stick_on_obstacles(*context_, *iterate_, contacts_) && loose() > 0) return true;
   return {};
 }
 

@@ -77,8 +77,8 @@ class Linearization {
   /// The tangent has more negative eigenvalues than there are rows. False where that is not known.
   bool unstable();
   /// The same in motions that leave contacts which press where they are, as a body makes that they hold. None where
-  /// that is not known: contacts of two things that move, of rigid bodies, that hardly press, or with friction; but
-  /// what would leave the equilibrium although all of these stick is unstable.
+  /// that is not known: contacts of two things that move, of rigid bodies, that hardly press, or touch without, or with
+  /// friction; but what would leave the equilibrium although all of these stick is unstable.
   std::optional<bool> unstable_between_contacts();
   /// Numbers of unknowns z that nothing resists, where `unstable` has looked.
   const std::vector<int>& unresisted() const { return unresisted_; }

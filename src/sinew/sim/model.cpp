@@ -250,7 +250,7 @@ void warn_of_flat_rods(Model& model) {
                                 .message = "its cross-section is not round, but contact takes it for a circle of " +
                                            text(1e3 * radius) + " mm radius, up to " + text(1e3 * most) +
                                            " mm outside the true one",
-                                .remedy = "move what it meets nearer by that much, or make it a solid",
+                                .remedy = "move what it meets away by that much, or make it a solid",
                                 .value = most,
                                 .limit = kRound * radius,
                                 .unit = "m"});

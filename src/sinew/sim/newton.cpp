@@ -259,9 +259,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
             here.factor(solid::Tangent::exact, Linearization::Wanted::any, unknown) && here.stability_known();
         report.unstable = report.stability_known && here.unstable();
         // What is stable without contacts is so with them; of the rest they may hold what would buckle.
-        const auto presses = [](const ContactState& own) { return !own.force.isZero(); };
-        const std::vector<ContactState>& contacts = iterate.state.contacts;
-        if (report.unstable && std::any_of(contacts.begin(), contacts.end(), presses)) {
+        if (report.unstable && !iterate.state.contacts.empty()) {
           const std::optional<bool> held = here.unstable_between_contacts();
           report.stability_known = held.has_value();
           report.unstable = held.value_or(false);

@@ -80,7 +80,11 @@ bool was_easy(const StepReport& report, bool at_once, int limit) {
 }
 
 StepReport try_to_advance(const Model& model, Workspace& workspace, State& state, Effort effort, const Told& told) {
-  if (model.scene.analysis == Analysis::statics) return taken(static_step(model, workspace, state), state);
+  if (model.scene.analysis == Analysis::statics) {
+    StepReport report = taken(static_step(model, workspace, state), state);
+    tell_contradiction(model, command_at(model, model.scene.time.duration), report);
+    return report;
+  }
   if (model.scene.analysis == Analysis::modal) return taken(modal_step(model, workspace, state), state);
   const bool equilibrium = model.scene.analysis == Analysis::quasi_static && !step_rules(model, effort).fixed;
   const double h = model.scene.time.step;

@@ -448,7 +448,9 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       part *= 2.0;
       if (on.t == 1.0) end = std::move(next);
     }
-    if (!stops && on.t != 1.0) {
+    if (on.t != 1.0 && spent.newton >= iteration_limit && most < kMostOfEquilibrium) {
+      end.report.status = Status::max_iterations;
+    } else if (!stops && on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
       Reached minimum = go(on.state, 1.0, rules);
       add_effort(minimum.report, spent);

@@ -20,8 +20,10 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
 /// the run begins). Newton goes there at once; where it does not get there, or ends at an equilibrium that is unstable
 /// or inside out, it follows the path, and where the path turns back or gets unstable, it leaves it for the nearest
 /// minimum under all loads: the jump that a real body would make. With contacts, which make kinks in a path, loads are
-/// brought on by parts instead. After `most` iterations, in multiples of `newton.limit`, no further part is tried.
+/// brought on by parts instead. After `most` iterations, in multiples of `newton.limit`, no further part is tried; then
+/// the nearest minimum is still looked for, but not where they are fewer than `kMostOfEquilibrium`.
+inline constexpr int kMostOfEquilibrium = 64;
 StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
-                            double time, int most = 64);
+                            double time, int most = kMostOfEquilibrium);
 
 }  // namespace sinew
