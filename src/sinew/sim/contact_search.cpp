@@ -96,8 +96,7 @@ class Search {
     if (!surface) {
       const contact::Pose pose = start_.pose(own);
       const Vec3 there = pose.R.transpose() * (point.x[0] - pose.p);
-      const Simplex part = contact::nearest_part(shape_of(start_.model, own), there);
-      return std::max(0.0, -contact::nearest(contact::point_at(there, point.radius), part).gap);
+      return std::max(0.0, -gap_to_shape(shape_of(start_.model, own), there, point.radius));
     }
     const bool in = contact::inside(*surface->mesh, surface->x, surface->faces, point.x[0]);
     if (!in && point.radius == 0.0) return 0.0;

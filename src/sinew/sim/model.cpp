@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/sim/building.hpp"
+#include "sinew/sim/contact_places.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
@@ -232,10 +233,7 @@ void warn_of_flat_rods(Model& model) {
   constexpr double kRound = 0.05;
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     const RodModel& rod = model.rods[i];
-    const Collider own{Collider::Kind::rod, static_cast<int>(i)};
-    if (std::none_of(model.pairs.begin(), model.pairs.end(),
-                     [&own](const PairModel& pair) { return pair.a == own || pair.b == own; }))
-      continue;
+    if (!in_a_pair(model, {Collider::Kind::rod, static_cast<int>(i)})) continue;
     double most = 0.0, radius = 0.0;
     for (const double s : rod.touching) {
       const double outer = rod::radius_at(rod.rod.profile, s), more = outer - rod::inner_radius_at(rod.rod.profile, s);
