@@ -22,9 +22,10 @@ import json
 import math
 import os
 import shutil
+import signal
 import subprocess
 import sys
-import time
+import tempfile
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -228,6 +229,18 @@ COLUMNS = ("body", "obstacle", "drive", "friction", "analysis", "step", "end", "
            "contacts", "force", "tip", "seconds", "detail")
 
 
+def timed(command: list[Any], limit: float) -> tuple[int, str, float]:
+    """How a command ended (as subprocess has it), what it said on stderr, and the processor time that it took, in
+    seconds; it is killed after `limit` of them."""
+    with tempfile.TemporaryFile("w+") as said:
+        process = subprocess.Popen(["prlimit", f"--cpu={math.ceil(limit)}", "--", *command], stdout=subprocess.DEVNULL,
+                                   stderr=said)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        said.seek(0)
+        return process.returncode, said.read(), round(usage.ru_utime + usage.ru_stime, 2)
+
+
 def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path, limit: float) -> Row:
     body, kind, drive, friction, analysis, step = name
     scene = scene_of(body, kind, drive, friction, analysis, STEPS[analysis][step])
@@ -235,15 +248,13 @@ def run(name: tuple[str, str, str, float, str, str], program: str, folder: Path,
     (folder / f"{title}.yaml").write_text(json.dumps(scene, indent=1))
     out = folder / title
     row: Row = dict(zip(COLUMNS, name))
-    begin = time.time()
-    try:
-        done = subprocess.run([program, "run", folder / f"{title}.yaml", "-o", out, "--quiet", "--force", "--threads", "1"],
-                              capture_output=True, text=True, timeout=limit)
-        row["end"] = {0: "done", 3: "stopped"}.get(done.returncode, f"exit {done.returncode}")
-        row["detail"] = " ".join(done.stderr.split())[-200:] if done.returncode else ""
-    except subprocess.TimeoutExpired:
+    ended, words, row["seconds"] = timed([program, "run", folder / f"{title}.yaml", "-o", out, "--quiet", "--force",
+                                          "--threads", "1"], limit)
+    if ended == -signal.SIGKILL:
         row["end"], row["detail"] = "time", f"not through after {limit:g} s"
-    row["seconds"] = round(time.time() - begin, 2)
+    else:
+        row["end"] = {0: "done", 3: "stopped"}.get(ended, f"exit {ended}")
+        row["detail"] = " ".join(words.split())[-200:] if ended else ""
     row["status"] = ""
     if (out / "signals.csv").exists():
         with open(out / "signals.csv", newline="") as stream:
@@ -314,7 +325,7 @@ def main() -> int:
     parser.add_argument("--program", default=str(ROOT / "build/release/sinew"))
     parser.add_argument("--only", nargs="*", default=[], help="words, each of which is in the names of the runs")
     parser.add_argument("--every", type=int, default=1, help="take every n-th run only")
-    parser.add_argument("--limit", type=float, default=120.0, help="[s] that a run may take")
+    parser.add_argument("--limit", type=float, default=120.0, help="[s] of processor time that a run may take")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--resume", action="store_true", help="keep the results that there are, and run the others")
     parser.add_argument("--table", type=Path, nargs="+", metavar="CSV",

@@ -176,6 +176,27 @@ TEST(Simplex, NormalOfAFaceStaysWhereAPointPassesThroughIt) {
   }
 }
 
+TEST(Simplex, WhatPassesThePlaneOfATriangleBesideItStaysOutside) {
+  Simplex triangle;
+  triangle.kind = Simplex::Kind::triangle;
+  triangle.x = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  const auto thick = [](const Vec3& x) { return contact::point_at(x, 0.1); };
+  const auto beside = [&thick](double height) { return thick(Vec3(-0.5, 0.3, height)); };
+  const Facing above = facing(beside(0.01), triangle);
+  for (const double height : {0.01, 0.0, -0.01, -0.2}) {
+    const Nearest found = nearest(beside(height), triangle, above);
+    EXPECT_NEAR(found.gap, std::hypot(0.5, height) - 0.1, 1e-15) << height;
+    EXPECT_LT(found.normal.x(), 0.0);
+  }
+  // Through the triangle itself they do come to cross.
+  const Simplex over = thick(Vec3(0.3, 0.3, 0.01)), under = thick(Vec3(0.3, 0.3, -0.01));
+  EXPECT_NEAR(nearest(under, triangle, facing(over, triangle)).gap, -0.11, 1e-15);
+  // What was inside, beside a rim that is told to be hollow, stays there.
+  triangle.normal = Vec3(1, 0, 1).normalized();
+  const Facing inside = facing(beside(-0.01), triangle);
+  EXPECT_NEAR(nearest(beside(-0.02), triangle, inside).gap, -std::hypot(0.5, 0.02) - 0.1, 1e-15);
+}
+
 TEST(Simplex, ParallelSegmentsMeetInTheMiddleOfWhatLiesSideBySide) {
   Simplex a, b;
   a.kind = b.kind = segment;

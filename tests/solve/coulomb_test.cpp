@@ -140,6 +140,22 @@ TEST(Coulomb, HoldsWhatWouldBuckle) {
   }
 }
 
+// Two contacts that push each other in, so that no forces obey the laws: sweeps let them grow until they overflow, and
+// beside a force that is infinite everything else is nothing.
+TEST(Coulomb, ForcesWithoutEndAreNoSolution) {
+  CoulombProblem problem;
+  problem.D = MatrixXd::Identity(6, 6);
+  problem.D(0, 3) = problem.D(3, 0) = -2.0;
+  problem.b = VectorXd::Zero(6);
+  problem.b[0] = problem.b[3] = -1.0;
+  problem.mu = VectorXd::Constant(2, 0.3);
+  VectorXd lambda = VectorXd::Zero(6);
+  Coulomb solver;
+  EXPECT_FALSE(solver.solve(problem, 1e-10, lambda).solved);
+  EXPECT_LT(lambda.lpNorm<Eigen::Infinity>(), 1e9);
+  EXPECT_EQ(residual(problem, VectorXd::Constant(6, 1e200)).largest(), INFINITY);
+}
+
 TEST(Coulomb, ResidualTellsEachLaw) {
   CoulombProblem problem{Matrix3d::Identity(), Vector3d(-1.0, 0.0, 0.0), VectorXd::Constant(1, 0.5)};
   EXPECT_NEAR(residual(problem, Vector3d(1.0, 0.0, 0.0)).largest(), 0.0, 1e-15);

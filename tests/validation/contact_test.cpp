@@ -177,6 +177,39 @@ TEST(Contact, TallBoxTipsBeyondItsDiagonal) {
   }
 }
 
+// A box tips over the edge of a table, its centre d beyond it and c above: it turns about the edge while it sticks,
+// (I/m) theta'' = g (d cos theta + c sin theta). Rounding alone took one of the two points away on which it turns.
+TEST(Contact, BoxTurnsAboutTheEdgeOfATable) {
+  const double d = 1 * mm, c = 10 * mm;
+  const double inertia = (0.06 * 0.06 + 0.02 * 0.02) / 12.0 + d * d + c * c;
+  double theta = 0.0, rate = 0.0;
+  const double short_step = 1e-6;
+  for (int i = 0; i < 120000; ++i) {
+    rate += short_step * kGravity * (d * std::cos(theta) + c * std::sin(theta)) / inertia;
+    theta += short_step * rate;
+  }
+  const auto tilt = [&](double h) {
+    Scene scene;
+    scene.time = {h, 0.12};
+    scene.gravity = Vec3(0, 0, -kGravity);
+    scene.contact.friction = 1.0;
+    Obstacle table;
+    table.shape = BoxShape{Vec3(200 * mm, 200 * mm, 40 * mm)};
+    table.pose.translate = Vec3(-100 * mm, 0, -20 * mm);
+    scene.obstacles.emplace_back("table", table);
+    RigidBody box = box_of(1.0, 0.05, Vec3(d, 50 * mm, c));
+    box.shape = BoxShape{Vec3(60 * mm, 20 * mm, 20 * mm)};
+    scene.bodies.emplace_back("box", box);
+    const auto at = end_of(build(scene, no_mesh)).bodies[0];
+    EXPECT_NEAR(at.p.y(), 50 * mm, 1e-9) << h;
+    EXPECT_LT(std::abs(at.R(1, 0)), 1e-9) << h;
+    return std::atan2(-at.R(2, 0), at.R(0, 0));
+  };
+  const double half_step = tilt(5e-4), step = tilt(1e-3);
+  EXPECT_NEAR(2.0 * half_step - step, theta, 2e-3 * theta);
+  for (const double h : {2e-3, 5e-3, 1e-2}) EXPECT_NEAR(tilt(h), theta, 25.0 * h * theta) << h;
+}
+
 TEST(Contact, FastBallStopsAtAThinPlate) {
   Scene scene = on_floor(0.01, 0.2, 0.5);
   Obstacle plate;

@@ -150,6 +150,17 @@ TEST(StoppedRuns, cable_on_post) {
   }
 }
 
+// Points of rods pass the planes of triangles that are far away, which was taken for an overlap as deep as they are
+// far: steps of hundreds of iterations, and no end on the ring.
+TEST(StoppedRuns, rods_pass_planes_of_far_triangles) {
+  const RecordedRun on_ring = fault("cable_on_ring"), on_block = fault("rod_on_block");
+  ASSERT_TRUE(on_ring.done()) << on_ring.why();
+  EXPECT_LT(iterations_of(on_ring), 600);
+  ASSERT_TRUE(on_block.done()) << on_block.why();
+  EXPECT_LT(iterations_of(on_block), 250);
+  EXPECT_FALSE(on_block.warning("snapped"));
+}
+
 // A capsule is thrown at a thin rod, which folds round it: it runs at any step, or says what does not converge.
 TEST(StoppedRuns, thin_rod_struck) {
   for (const char* step : {"2.2 ms", "1.1 ms", "0.22 ms"}) {

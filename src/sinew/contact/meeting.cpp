@@ -386,7 +386,8 @@ void Meet::polyhedra(const Shape& first, const Pose& at, const Shape& second, co
     }
     if (polygon.empty()) return;
   }
-  const bool above = std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& p) { return n.dot(p - x) > 0.0; });
+  const bool above =  // by more than rounding: what lies on the face at several points keeps them all
+      std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& p) { return n.dot(p - x) > 1e-9 * size; });
   if (polygon.empty() || (overlap && above)) {  // beside the face: two edges, or else the corner that is deepest
     if (edges_meet) return add_edges();
     polygon.push_back(*std::min_element(corners.begin(), corners.end(),

@@ -213,12 +213,19 @@ Facing facing(const Simplex& a, const Simplex& b) {
   if (a.kind == segment && b.kind == segment && inside(found.a, 2) && inside(found.b, 2) && !b.normal.isZero() &&
       !across(a, b).isZero(0.0))
     return {crossing, found.normal};
-  return {thin ? fixed : apart, found.normal};
+  return {thin ? fixed : apart, found.normal, found.gap + a.radius + b.radius >= 0.0};
 }
 
 Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
   Nearest found = nearest(a, b);
-  if (kept.kind == Facing::Kind::apart) return found;
+  if (kept.kind == Facing::Kind::apart) {
+    const double distance = found.gap + a.radius + b.radius;
+    if (kept.outside && distance < 0.0 && b.kind == Simplex::Kind::triangle && !inside(found.b, 3)) {
+      found.normal = -found.normal;
+      found.gap = -distance - a.radius - b.radius;
+    }
+    return found;
+  }
   found.normal = kept.normal;
   if (kept.kind == Facing::Kind::face) found.normal = face_normal(b);
   if (kept.kind == Facing::Kind::crossing) {

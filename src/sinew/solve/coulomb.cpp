@@ -41,18 +41,32 @@ OwnCompliance own_compliance(const CoulombProblem& problem, int contact) {
 
 double CoulombResidual::largest() const { return std::max({complementarity, cone, dissipation}); }
 
+namespace {
+
+/// The largest force there is, b / D_ii included.
+double largest_force(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
+  double largest = 0.0;
+  for (int i = 0; i < problem.contacts(); ++i) {
+    const auto k = 3 * i;
+    const Stiffness own = stiffness(problem, i);
+    largest = std::max({largest, lambda.segment<3>(k).norm(), own.normal * std::abs(problem.b[k]),
+                        own.tangent * problem.mu[i] * problem.b.segment<2>(k + 1).norm()});
+  }
+  return largest;
+}
+
+}  // namespace
+
 CoulombResidual residual(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
   CoulombResidual left;
   const Eigen::VectorXd u = problem.D * lambda + problem.b;
-  if (!u.allFinite()) return {INFINITY, INFINITY, INFINITY};
-  double largest = 0.0;
+  const double largest = largest_force(problem, lambda);
+  if (!u.allFinite() || !std::isfinite(largest)) return {INFINITY, INFINITY, INFINITY};
   for (int i = 0; i < problem.contacts(); ++i) {
     const auto k = 3 * i;
     const Stiffness own = stiffness(problem, i);
     const double n = lambda[k], mu = problem.mu[i];
     const Vector2d t = lambda.segment<2>(k + 1);
-    largest = std::max({largest, lambda.segment<3>(k).norm(), own.normal * std::abs(problem.b[k]),
-                        own.tangent * mu * problem.b.segment<2>(k + 1).norm()});
     left.complementarity = std::max(left.complementarity, std::abs(std::min(n, own.normal * u[k])));
     const double radius = mu * std::max(n, 0.0);
     left.cone = std::max(left.cone, t.norm() - radius);
@@ -360,11 +374,14 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
   // their motion as a whole, want little, piles of rigid bodies, whose forces are not decided, more.
   constexpr double kYields[] = {1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-2, 1e-5};
   constexpr int kIdle = 2;
+  constexpr double kMostGrowth = 1e6;  // of forces in sweeps
   int sweeps = 4, idle = 0;
+  double bound = INFINITY;
   report.solved = report.residual.largest() <= tolerance;
   // Sweeps look at one contact after the other and let go of what only all of them hold: there the forces that there
-  // are tell what is closed.
+  // are tell what is closed; and their forces may grow without end.
   if (!report.solved && indefinite(problem)) {
+    bound = kMostGrowth * largest_force(problem, lambda);
     yield_ = 0.0;
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
@@ -374,7 +391,9 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     const double before = report.residual.largest();
     // (Sweeps may have to get worse before they get better: the last ones, which are many, begin afresh.)
     if (turn + 1 == std::size(kYields)) lambda.setZero();
-    for (int i = 0; i < sweeps; ++i, ++report.sweeps) sweep(problem, lambda);
+    for (int i = 0; i < sweeps && lambda.lpNorm<Eigen::Infinity>() <= bound; ++i, ++report.sweeps)
+      sweep(problem, lambda);
+    if (!(lambda.lpNorm<Eigen::Infinity>() <= bound)) lambda = best_;
     report.solved = keep();
     if (report.solved) break;
     yield_ = kYields[turn];
