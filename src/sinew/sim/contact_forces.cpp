@@ -102,6 +102,7 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
                             const Reduced& reduced, std::vector<FreeMotion>& free, solve::CoupledFactor& factor) {
   add_rows(context, iterate, room, reduced);
   unanswered_ = -1;
+  coulomb_.begin();
   const int n = 3 * contacts();
   problem_.D.setZero(n, n);
   problem_.mu.setOnes(n / 3);

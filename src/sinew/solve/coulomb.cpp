@@ -22,8 +22,11 @@ Stiffness stiffness(const CoulombProblem& problem, int contact) {
 
 /// Whether some forces move contacts against themselves, as where bodies would buckle but for their contacts.
 bool indefinite(const CoulombProblem& problem) {
-  const Eigen::VectorXd& pivots = Eigen::LDLT<Eigen::MatrixXd>(problem.D).vectorD();
-  return pivots.minCoeff() < -1e-9 * pivots.maxCoeff();
+  const auto diagonal = problem.D.diagonal();
+  if (diagonal.minCoeff() < 0.0) return true;
+  Eigen::MatrixXd shifted = problem.D;
+  shifted.diagonal().array() += 1e-9 * diagonal.maxCoeff();
+  return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() != Eigen::Success;
 }
 
 /// The nearest point of a disk.
@@ -227,7 +230,7 @@ void Coulomb::derive(const CoulombProblem& problem, const Eigen::VectorXd& lambd
   B.bottomLeftCorner<2, 1>() = mu * scale_n_[contact] * d;
 }
 
-bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda) {
+bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda, bool chord) {
   active_.clear();
   step_ = -F_;  // of open contacts: their force goes
   lost_ = step_;
@@ -236,9 +239,10 @@ bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda)
     active_.push_back(i);
     lost_.segment<3>(3 * i).setZero();
   }
+  if (chord && active_ != factored_) return false;
   if (active_.empty()) return true;
   const auto n = static_cast<Eigen::Index>(3 * active_.size());
-  J_.resize(n, n);
+  if (!chord) J_.resize(n, n);
   right_.resize(n);
   const Eigen::VectorXd moved = problem.D * lost_;
   for (std::size_t a = 0; a < active_.size(); ++a) {
@@ -246,15 +250,19 @@ bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda)
     const auto k = 3 * i, row = 3 * static_cast<int>(a);
     Eigen::Matrix3d A, B;
     derive(problem, lambda, i, aim(lambda, i).norm() <= radius(problem, lambda, i), A, B);
+    right_.segment<3>(row) = -F_.segment<3>(k) - B * moved.segment<3>(k);
+    if (chord) continue;
     for (std::size_t c = 0; c < active_.size(); ++c)
       J_.block<3, 3>(row, 3 * static_cast<int>(c)).noalias() = B * problem.D.block<3, 3>(k, 3 * active_[c]);
     const Eigen::Vector3d yields(yield_ / scale_n_[i], yield_ / scale_t_[i], yield_ / scale_t_[i]);
     J_.block<3, 3>(row, row) += A + B * yields.asDiagonal();
-    right_.segment<3>(row) = -F_.segment<3>(k) - B * moved.segment<3>(k);
   }
-  work_ += std::pow(static_cast<double>(n), 3) / 3.0;
-  const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> lu(J_);
-  right_ = lu.solve(right_).eval();
+  if (!chord) {
+    work_ += std::pow(static_cast<double>(n), 3) / 3.0;
+    factor_.compute(J_);
+    factored_ = active_;
+  }
+  right_ = factor_.solve(right_).eval();
   if (!right_.allFinite()) return false;
   for (std::size_t a = 0; a < active_.size(); ++a)
     step_.segment<3>(3 * active_[a]) = right_.segment<3>(static_cast<Eigen::Index>(3 * a));
@@ -263,6 +271,7 @@ bool Coulomb::step(const CoulombProblem& problem, const Eigen::VectorXd& lambda)
 
 bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps) {
   constexpr int kMost = 40, kHalvings = 8;
+  constexpr double kChord = 1e-2;  // of the squares of F
   held_ = lambda;
   double merit = evaluate(problem, lambda);
   int worse = 0;
@@ -273,8 +282,19 @@ bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::Vec
       held_ = lambda;
       merit = evaluate(problem, lambda);
     }
+    // With the factors of a step before, while they bring it on.
+    if (step(problem, lambda, true)) {
+      trial_ = lambda + step_;
+      const double next = evaluate(problem, trial_);
+      if (next < kChord * merit) {
+        lambda = trial_;
+        merit = next;
+        continue;
+      }
+      evaluate(problem, lambda);
+    }
     ++steps;
-    if (!step(problem, lambda)) return false;
+    if (!step(problem, lambda, false)) return false;
     double part = 1.0;
     trial_ = lambda + step_;
     double next = evaluate(problem, trial_);

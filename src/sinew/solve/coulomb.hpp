@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <vector>
 
 namespace sinew::solve {
@@ -46,7 +47,7 @@ void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda);
 struct CoulombReport {
   bool solved = false;  ///< to the tolerance
   int sweeps = 0;       ///< of block Gauss-Seidel
-  int newton = 0;       ///< steps of semi-smooth Newton
+  int newton = 0;       ///< factorisations of semi-smooth Newton
   double work = 0.0;    ///< multiplications, about
   CoulombResidual residual;
 };
@@ -66,6 +67,8 @@ class Coulomb {
   /// `lambda` is where it starts (3n, the forces of the last step or zero) and the solution, or the best that was
   /// found. What is solved to `nearly`, and what two turns do not improve by half, is left there.
   CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, double nearly = 0.0);
+  /// Problems from now on have another D. (Those with the same one share factors.)
+  void begin() { factored_.clear(); }
 
   /// What each contact does at a solution.
   void modes(const CoulombProblem& problem, const Eigen::VectorXd& lambda, std::vector<CoulombPiece>& modes);
@@ -81,13 +84,15 @@ class Coulomb {
   void derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, bool sticks,
               Eigen::Matrix3d& A, Eigen::Matrix3d& B) const;
   double radius(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact) const;
-  bool step(const CoulombProblem& problem, const Eigen::VectorXd& lambda);
+  /// A step of Newton; `chord`: with the factors of the last one that had its own. False where there is none.
+  bool step(const CoulombProblem& problem, const Eigen::VectorXd& lambda, bool chord);
   bool newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps);
 
   double yield_ = 0.0, work_ = 0.0;
   Eigen::VectorXd u_, F_, step_, trial_, best_, held_, lost_, right_, scale_n_, scale_t_;
   Eigen::MatrixXd J_, sides_;
-  std::vector<int> active_;
+  std::vector<int> active_, factored_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
 };
 
 }  // namespace sinew::solve

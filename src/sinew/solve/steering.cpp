@@ -414,6 +414,7 @@ bool Steering::solve(const SteeringProblem& problem) {
     return here_.p.allFinite();
   }
   contacts_ = problem.contacts;
+  coulomb_.begin();
   const Point start = here_;
   if (!descend(problem, here_)) return false;
   const auto try_from_there = [&] {
@@ -442,6 +443,7 @@ bool Steering::solve(const SteeringProblem& problem) {
 const Eigen::MatrixXd& Steering::reaction(const SteeringProblem& problem) {
   here_.lambda = problem.held;
   contacts_ = problem.contacts;
+  coulomb_.begin();
   coulomb_.modes(contacts_, here_.lambda, here_.modes);
   if (!coulomb_.follow(contacts_, here_.lambda, here_.modes, problem.B, S_))
     S_.setConstant(problem.held.size(), problem.B.cols(), NAN);
