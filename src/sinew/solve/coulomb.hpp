@@ -84,7 +84,7 @@ class Coulomb {
   void derive(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact, bool sticks,
               Eigen::Matrix3d& A, Eigen::Matrix3d& B) const;
   double radius(const CoulombProblem& problem, const Eigen::VectorXd& lambda, int contact) const;
-  /// A step of Newton; `chord`: with the factors of the last one that had its own. False where there is none.
+  /// A step of Newton; `chord`: with the last factorisation. False where that is of other closed contacts.
   bool step(const CoulombProblem& problem, const Eigen::VectorXd& lambda, bool chord);
   bool newton(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, int& steps);
 

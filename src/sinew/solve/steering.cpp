@@ -443,7 +443,6 @@ bool Steering::solve(const SteeringProblem& problem) {
 const Eigen::MatrixXd& Steering::reaction(const SteeringProblem& problem) {
   here_.lambda = problem.held;
   contacts_ = problem.contacts;
-  coulomb_.begin();
   coulomb_.modes(contacts_, here_.lambda, here_.modes);
   if (!coulomb_.follow(contacts_, here_.lambda, here_.modes, problem.B, S_))
     S_.setConstant(problem.held.size(), problem.B.cols(), NAN);
