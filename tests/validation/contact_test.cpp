@@ -210,6 +210,23 @@ TEST(Contact, BoxTurnsAboutTheEdgeOfATable) {
   for (const double h : {2e-3, 5e-3, 1e-2}) EXPECT_NEAR(tilt(h), theta, 25.0 * h * theta) << h;
 }
 
+// Between the four points on which it stands a coin that tips by phi would sink in by R (1 - cos(45 deg)) phi.
+TEST(Contact, CoinTipsInAnyDirection) {
+  for (const double angle : {0.0, 30.0, 45.0, 100.0}) {
+    Scene scene = on_floor(2e-3, 2e-3, 0.5);
+    RigidBody coin = box_of(0.0, 0.05, Vec3(0, 0, 5 * mm));
+    coin.shape = CylinderShape{20 * mm, 10 * mm};
+    coin.spin = 2.0 * Vec3(std::cos(angle * std::numbers::pi / 180.0), std::sin(angle * std::numbers::pi / 180.0), 0);
+    coin.velocity = Vec3(0, 0, 2.0 * 20 * mm);  // it turns about a point of its rim
+    scene.bodies.emplace_back("coin", coin);
+    const rigid::Motion at = end_of(build(scene, no_mesh)).bodies[0];
+    const Vec3 axis = at.R.col(2);
+    EXPECT_GT(std::acos(axis.z()), 1e-3) << angle;  // it tips
+    const double lowest = at.p.z() - 5 * mm * axis.z() - 20 * mm * std::hypot(axis.x(), axis.y());
+    EXPECT_NEAR(lowest, 0.0, 1e-9) << angle;
+  }
+}
+
 TEST(Contact, FastBallStopsAtAThinPlate) {
   Scene scene = on_floor(0.01, 0.2, 0.5);
   Obstacle plate;

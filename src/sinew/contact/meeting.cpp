@@ -13,22 +13,23 @@ namespace {
 Vec3 into(const Pose& pose, const Vec3& x) { return pose.R.transpose() * (x - pose.p); }
 
 /// A cylinder's rims, each with its lowest point along -n as it rolls, and the points across and opposite, on which it
-/// stands.
+/// stands. Where all directions are as low but for rounding, it stands on four fixed points, and the lowest comes
+/// beside them: within a step the cylinder may tip towards any direction.
 void add_rims(const Cylinder& cylinder, const Vec3& n, std::vector<Simplex>& points) {
   Vec3 down(-n.x(), -n.y(), 0.0);
   const bool stands = down.norm() <= kFlatRim;
   down = down.norm() <= 1e-12 ? Vec3(Vec3::UnitX()) : Vec3(down.normalized());
   const Vec3 across(-down.y(), down.x(), 0.0);
+  std::vector<Simplex> lowest;
   for (const double end : {-0.5, 0.5}) {
     const Vec3 cap(0.0, 0.0, end * cylinder.length);
-    if (stands) {  // every direction is as low, but for rounding
-      points.push_back(point_at(cap + cylinder.radius * down, 0.0));
-    } else {
-      points.push_back(circle_at(cap, Vec3::UnitZ(), cylinder.radius, down));
-    }
+    const Simplex rolls = circle_at(cap, Vec3::UnitZ(), cylinder.radius, down);
+    points.push_back(stands ? point_at(cap + cylinder.radius * down, 0.0) : rolls);
     for (const Vec3& direction : {across, Vec3(-down), Vec3(-across)})
       points.push_back(point_at(cap + cylinder.radius * direction, 0.0));
+    if (stands) lowest.push_back(rolls);
   }
+  points.insert(points.end(), lowest.begin(), lowest.end());
 }
 
 /// What a meeting is between, and the numbers of the two parts; in all what a double holds exactly.
