@@ -274,6 +274,47 @@ TEST(MeshContact, ABladeStopsABall) {
   }
 }
 
+/// The tip of a pyramid rests in a groove of slope 1/2, on both sides of which its weight W leans with W / (2 cos a);
+/// on one side alone it would slide.
+TEST(MeshContact, ATipRestsInAGroove) {
+  solid::Mesh groove;  // of five corners, along x
+  groove.nodes.resize(3, 10);
+  const std::array<std::array<double, 2>, 5> section = {{{-30, -30}, {30, -30}, {30, 15}, {0, 0}, {-30, 15}}};
+  for (int i = 0; i < 5; ++i) {
+    const auto [y, z] = section[static_cast<std::size_t>(i)];
+    groove.nodes.col(i) = Vec3(-40 * mm, y * mm, z * mm);
+    groove.nodes.col(i + 5) = Vec3(50 * mm, y * mm, z * mm);
+    const int next = (i + 1) % 5;
+    groove.faces.push_back({i, next, i + 5});
+    groove.faces.push_back({next, next + 5, i + 5});
+  }
+  for (const auto& [a, b, c] : {std::array{0, 1, 3}, std::array{1, 2, 3}, std::array{0, 3, 4}}) {
+    groove.faces.push_back({a, c, b});
+    groove.faces.push_back({a + 5, b + 5, c + 5});
+  }
+  solid::Mesh tip;
+  tip.nodes.resize(3, 5);
+  tip.nodes << 0, 5 * mm, -5 * mm, -5 * mm, 5 * mm,  //
+      0, 5 * mm, 5 * mm, -5 * mm, -5 * mm,           //
+      0, 20 * mm, 20 * mm, 20 * mm, 20 * mm;
+  tip.faces = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}};
+  for (const double y : {0.0, 1e-7, -1e-7}) {  // m beside the bottom
+    Scene scene = on_floor(1e-3, 5e-3, 0.0);
+    scene.obstacles.clear();
+    scene.obstacles.emplace_back("groove", obstacle(mesh_of("groove.stl"), Vec3::Zero()));
+    RigidBody body;
+    body.shape = mesh_of("tip.stl");
+    body.mass = 0.1;
+    body.pose.translate = Vec3(0, y, 0.5 * std::abs(y));
+    scene.bodies.emplace_back("tip", body);
+    const State end = end_of(build(scene, reader(named({{"groove.stl", groove}, {"tip.stl", tip}}))));
+    EXPECT_LT(end.bodies[0].v.norm(), 5e-4) << y;  // (a slide: 20 mm/s)
+    ASSERT_EQ(end.contacts.size(), 2U) << y;
+    for (const ContactState& own : end.contacts)
+      EXPECT_NEAR(own.force.norm(), 0.1 * kGravity / 2.0 * std::sqrt(1.25), 1e-2) << y;
+  }
+}
+
 /// What overlaps is told by how much, and moved apart; what is only fast, or about to be moved, is not told.
 TEST(MeshContact, OverlapsAtTheStartAreToldAndMended) {
   const auto meshes = named({{"slab.stl", box_surface(Vec3(100 * mm, 100 * mm, 20 * mm))},

@@ -161,6 +161,19 @@ TEST(StoppedRuns, rods_pass_planes_of_far_triangles) {
   EXPECT_FALSE(on_block.warning("snapped"));
 }
 
+// The corner of a cube is pressed into a soft beam: it slid to and fro between both sides of a valley until the run
+// stopped, `passed_through`.
+TEST(StoppedRuns, corner_in_valley) {
+  for (const char* y : {"1 mm", "2 mm", "2.5 mm", "3 mm"}) {
+    SCOPED_TRACE(y);
+    const RecordedRun run =
+        fault("corner_in_valley", {"obstacles.cube.pose.translate=[85 mm, " + std::string(y) + ", 34 mm]"});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_LT(iterations_of(run), 400);
+    EXPECT_FALSE(run.warning("snapped"));
+  }
+}
+
 // A capsule is thrown at a thin rod, which folds round it: it runs at any step, or says what does not converge.
 TEST(StoppedRuns, thin_rod_struck) {
   for (const char* step : {"2.2 ms", "1.1 ms", "0.22 ms"}) {

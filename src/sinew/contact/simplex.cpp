@@ -163,7 +163,7 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
         found.b = on_triangle(p, b.x[0], b.x[1], b.x[2]);
         const Vec3 n = (b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]).normalized();
         const Vec3 d = p - point_of(b, found.b);
-        if (found.b[0] > 0.0 && found.b[1] > 0.0 && found.b[2] > 0.0) {
+        if (b.in_valley || (found.b[0] > 0.0 && found.b[1] > 0.0 && found.b[2] > 0.0)) {
           found.normal = n;
           found.gap = n.dot(d);
         } else {
@@ -208,7 +208,7 @@ Facing facing(const Simplex& a, const Simplex& b) {
   if (b.kind == plane) return {face, found.normal};
   if (b.kind == triangle) {
     const double edge = std::max((b.x[1] - b.x[0]).norm(), (b.x[2] - b.x[0]).norm());
-    if (thin && (inside(found.b, 3) || std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
+    if (thin && (b.in_valley || inside(found.b, 3) || std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
   }
   if (a.kind == segment && b.kind == segment && inside(found.a, 2) && inside(found.b, 2) && !b.normal.isZero() &&
       !across(a, b).isZero(0.0))

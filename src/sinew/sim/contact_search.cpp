@@ -376,6 +376,7 @@ class Search {
     const Vec3 outward = outward_of(a);
     const bool itself = a.on == faced, thick = point.radius > 0.0;
     std::optional<ContactSide> nearest;
+    int nearest_face = -1;
     std::optional<bool> in;
     double least = INFINITY, against = INFINITY;
     bool in_front = false;
@@ -416,8 +417,34 @@ class Search {
       least = std::min(least, distance);
       against = facing;
       nearest = b;
+      nearest_face = number;
     });
-    if (nearest && !in_front) add(a, *nearest, key(part, prong, 0));
+    if (!nearest || in_front) return;
+    add(a, *nearest, key(part, prong, 0));
+    if (!thick) add_valley(a, point, faced, surface, nearest_face, prong, part);
+  }
+
+  /// In a valley a thin point touches both sides: of the faces across the edges near the point, those that rise.
+  void add_valley(const ContactSide& a, const Simplex& point, const Collider& faced, const Surface& surface, int face,
+                  int prong, Part part) {
+    constexpr double kRises = 1e-3;  // the sine of the angle between both sides
+    constexpr double kNear = 0.5;    // of the longest edge
+    const contact::Mesh& mesh = *surface.mesh;
+    const auto number = static_cast<std::size_t>(face);
+    const Simplex here = start_.placed(part_of(faced, surface, Simplex::Kind::triangle, mesh.triangles[number]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int other = mesh.beside[number][i];
+      if (other < 0) continue;
+      const std::array<int, 3>& corners = mesh.triangles[static_cast<std::size_t>(other)];
+      if (a.on == faced && near_at_rest(mesh, a.nodes[0], corners)) continue;
+      const Vec3 &from = here.x[i], &to = here.x[(i + 1) % 3], &x = point.x[0], n = surface.outward.faces.col(other);
+      const Vec3 side = here.x[(i + 2) % 3] - from;
+      const auto [s, t] = contact::on_segment(x, from, to);
+      if (n.dot(side) <= kRises * side.norm() || (x - s * from - t * to).norm() > kNear * longest_edge(here)) continue;
+      ContactSide b = part_of(faced, surface, Simplex::Kind::triangle, corners);
+      b.local.in_valley = true;
+      if (matters(n.dot(x - from))) add(a, b, key(part, prong, other + 1));
+    }
   }
 
   static double longest_edge(const Simplex& face) {
