@@ -187,6 +187,19 @@ TEST(Faults, phantom_beside_face) {
   }
 }
 
+// Without friction the sides of what slides stopped at nodes of a soft block, and nodes at the side of a second floor:
+// momentum has nowhere to go.
+TEST(Faults, seams_stop_nothing) {
+  const RecordedRun brick = fault("brick_on_slab"), cube = fault("cube_over_seam");
+  ASSERT_TRUE(brick.done()) << brick.why();
+  EXPECT_NEAR(brick.last("brick.x"), 24e-3 + 0.3 * 0.2, 0.1e-3);
+  EXPECT_NEAR(brick.last("brick.y"), 3e-3, 0.1e-3);
+  ASSERT_TRUE(cube.done()) << cube.why();
+  const std::vector<double> way = cube.signal("cube.x");
+  const std::size_t last = way.size() - 1;
+  EXPECT_NEAR(way[last] - way[last - 50], way[100] - way[50], 1e-3 * (way[100] - way[50]));
+}
+
 // A capsule and a box that overlap by 1.2 mm at the start.
 TEST(Faults, overlap_not_told) {
   const RecordedRun run = fault("overlap_not_told");

@@ -315,6 +315,76 @@ TEST(MeshContact, ATipRestsInAGroove) {
   }
 }
 
+/// A plate with its top at z = 0 in squares of `cell`, two triangles each.
+solid::Mesh plate_surface(int cells_x, int cells_y, double cell) {
+  solid::Mesh mesh;
+  const int rows = cells_y + 1, of_top = (cells_x + 1) * rows;
+  mesh.nodes.resize(3, 2 * of_top);
+  for (int i = 0; i < of_top; ++i) {
+    const int column = i / rows, row = i % rows;
+    const double y = (row - 0.5 * cells_y) * cell;
+    mesh.nodes.col(i) = Vec3(column * cell, y, 0);
+    mesh.nodes.col(of_top + i) = Vec3(column * cell, y, -10 * mm);
+  }
+  const auto add = [&mesh](int a, int b, int c, int d) {
+    mesh.faces.push_back({a, b, c});
+    mesh.faces.push_back({a, c, d});
+  };
+  for (int i = 0; i < cells_x; ++i) {
+    for (int k = 0; k < cells_y; ++k) {
+      const int a = i * rows + k, b = a + rows, c = b + 1, d = a + 1;
+      add(a, b, c, d);
+      add(of_top + a, of_top + d, of_top + c, of_top + b);
+    }
+    const int left = i * rows, right = left + cells_y;
+    add(of_top + left, of_top + left + rows, left + rows, left);
+    add(right, right + rows, of_top + right + rows, of_top + right);
+  }
+  for (int k = 0; k < cells_y; ++k) {
+    const int last = cells_x * rows + k;
+    add(of_top + k, k, k + 1, of_top + k + 1);
+    add(last, of_top + last, of_top + last + 1, last + 1);
+  }
+  return mesh;
+}
+
+/// Nothing without friction stops what slides over a level floor, whatever this is made of.
+TEST(MeshContact, SeamsOfALevelFloorStopNothing) {
+  const Vec3 brick(30 * mm, 30 * mm, 20 * mm), half(200 * mm, 200 * mm, 20 * mm);
+  const auto meshes = named({{"brick.stl", box_surface(brick)},
+                             {"half.stl", box_surface(half)},
+                             {"plate.stl", plate_surface(20, 8, 20 * mm)}});
+  const std::array<BodyShape, 3> shapes = {BoxShape{brick}, CylinderShape{15 * mm, 20 * mm}, mesh_of("brick.stl")};
+  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+    for (const char* floor : {"boxes", "meshes", "plate"}) {
+      for (const double turned : {0.0, 0.2}) {
+        SCOPED_TRACE(std::to_string(shape) + " on " + floor + ", turned by " + std::to_string(turned));
+        Scene scene = on_floor(2e-3, 0.2, 0.0);
+        scene.obstacles.clear();
+        if (floor == std::string("plate")) {
+          scene.obstacles.emplace_back("plate", obstacle(mesh_of("plate.stl"), Vec3::Zero()));
+        } else {
+          for (const double x : {100 * mm, 300 * mm}) {
+            const std::string name = x < 200 * mm ? "here" : "there";
+            scene.obstacles.emplace_back(name, floor == std::string("boxes")
+                                                   ? obstacle(BoxShape{half}, Vec3(x, 0, -10 * mm))
+                                                   : obstacle(mesh_of("half.stl"), Vec3(x, 0, -10 * mm)));
+          }
+        }
+        RigidBody body = box_of(1.0, 0.02, Vec3(100.7 * mm, 3 * mm, 10 * mm));
+        body.shape = shapes[shape];
+        body.pose.rotate = Vec3(0, 0, turned);
+        body.velocity = Vec3(1, 0, 0);
+        scene.bodies.emplace_back("brick", body);
+        const rigid::Motion at = end_of(build(scene, reader(meshes))).bodies[0];
+        EXPECT_NEAR((at.p - Vec3(300.7 * mm, 3 * mm, 10 * mm)).norm(), 0.0, 1e-6);
+        EXPECT_NEAR((at.v - Vec3(1, 0, 0)).norm(), 0.0, 1e-5);
+        EXPECT_NEAR(at.w.norm(), 0.0, 1e-3);
+      }
+    }
+  }
+}
+
 /// What overlaps is told by how much, and moved apart; what is only fast, or about to be moved, is not told.
 TEST(MeshContact, OverlapsAtTheStartAreToldAndMended) {
   const auto meshes = named({{"slab.stl", box_surface(Vec3(100 * mm, 100 * mm, 20 * mm))},

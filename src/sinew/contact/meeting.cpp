@@ -229,18 +229,23 @@ void Meet::axis_inside(const Simplex& axis, const Pose& at, const Polyhedron& ow
         key(swapped ? Kind::face_of_first : Kind::face_of_second, face, number++), swapped);
 }
 
-/// Largest distance of Q from the plane of a face of P, over all faces.
+/// Largest distance of Q from the plane of a face of P, over all faces; and whether the plane of one of them is
+/// touched, but for `graze`.
 struct FaceAxis {
   double separation = -INFINITY;
   std::size_t face = 0;
+  bool grazes = false;
 };
-FaceAxis best_face(const Polyhedron& P, const std::vector<Vec3>& Q_in_P) {
+FaceAxis best_face(const Polyhedron& P, const std::vector<Vec3>& Q_in_P, double graze) {
   FaceAxis best;
   for (std::size_t f = 0; f < P.faces.size(); ++f) {
     const Vec3 &n = P.normals[f], &x = P.corners[P.faces[f][0]];
     double least = INFINITY;
     for (const Vec3& corner : Q_in_P) least = std::min(least, n.dot(corner - x));
-    if (least > best.separation) best = {least, f};
+    best.grazes = best.grazes || std::abs(least) <= graze;
+    if (least <= best.separation) continue;
+    best.separation = least;
+    best.face = f;
   }
   return best;
 }
@@ -338,14 +343,17 @@ void Meet::polyhedra(const Shape& first, const Pose& at, const Shape& second, co
   std::vector<Vec3> Q_in_P, P_in_Q;
   for (const Vec3& corner : Q.corners) Q_in_P.push_back(Q_to_P * corner);
   for (const Vec3& corner : P.corners) P_in_Q.push_back(P_to_Q * corner);
-  const FaceAxis of_P = best_face(P, Q_in_P);
+  double size = 0.0;
+  for (const Vec3& corner : P.corners) size = std::max(size, corner.norm());
+  const double graze = kSamePlane * size;
+  const FaceAxis of_P = best_face(P, Q_in_P, graze);
   if (of_P.separation >= alarm_) return;
-  const FaceAxis of_Q = best_face(Q, P_in_Q);
+  const FaceAxis of_Q = best_face(Q, P_in_Q, graze);
   if (of_Q.separation >= alarm_) return;
   const EdgeAxis edges = best_edges(P, Q, Q_in_P, Q_to_P);
   if (edges.separation >= alarm_) return;
-  double size = 0.0;
-  for (const Vec3& corner : P.corners) size = std::max(size, corner.norm());
+  // What slides in the plane of a face towards that face does not stop at its rim.
+  if ((of_P.grazes || of_Q.grazes) && std::max(of_P.separation, of_Q.separation) > graze) return;
   // Faces where they say about the same: their patch does not flicker.
   const double clearly = 1e-3 * size;
   const auto add_edges = [&] {

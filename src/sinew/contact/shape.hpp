@@ -49,6 +49,14 @@ using Shape = std::variant<HalfSpace, Ball, Capsule, Cylinder, Convex, Mesh>;
 /// near, but for a thousandth of the size, the one that looks most against `outward`, the outside of what p belongs to
 /// (zero where that is not known). Throws std::invalid_argument for a mesh.
 Simplex nearest_part(const Shape& shape, const Vec3& p, const Vec3& outward = Vec3::Zero());
+/// Part of the size within which what lies in a plane is in it.
+inline constexpr double kSamePlane = 1e-6;
+/// Cosine of the angle to its outside below which a face looks against a point.
+inline constexpr double kAgainst = -0.2;
+
+/// Whether p lies beside a face in its plane, and that face looks against `outward`, the outside of what p belongs to:
+/// what slides there towards the face does not stop at its rim.
+bool grazes(const Shape& shape, const Vec3& p, const Vec3& outward);
 
 /// An edge of a polyhedron; its normal is between those of its two faces.
 Simplex edge_of(const Polyhedron& own, std::size_t edge);

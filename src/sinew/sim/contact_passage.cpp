@@ -114,10 +114,10 @@ double beyond_its_parts(const StepMotion& motion, const ContactState& own, const
   const PairModel& pair = end.model.pairs[static_cast<std::size_t>(own.pair)];
   if (are_shapes(end.model, pair)) {
     more = std::min(more, gap_of_shapes(motion, pair, 1.0, gap + more) - gap);
-  } else if (!is_shape(end.model, pair.a) && !is_shape(end.model, pair.b)) {
+  } else if (!is_shape(end.model, own.b.on)) {  // corners go from one triangle to the next
     if (!surfaces) surfaces.emplace().fit(end);
     const Surface *of_a = surfaces->of(own.a.on), *of_b = surfaces->of(own.b.on);
-    if (!of_a && !of_b) return 0.0;  // pieces of rods end where they do
+    if (!of_a && !of_b) return is_shape(end.model, own.a.on) ? more : 0.0;  // pieces of rods end where they do
     const double there =
         of_b ? gap_to_surface(*of_b, touch.point_a, gap + more) : gap_to_surface(*of_a, touch.point_b, gap + more);
     more = std::min(more, there - gap);

@@ -337,19 +337,20 @@ class Search {
   /// what is there. True of points of shapes.
   bool out_of_corner(const ContactSide& point, const Vec3& d) const {
     const Surface* surface = surfaces_.of(point.on);
-    if (!surface) return true;
-    const int own = point.nodes[0];
-    const Vec3 x = surface->x.col(own);
-    bool out = true;
-    surface->faces.each_near(contact::Box(x), [&](int number) {
-      const std::array<int, 3>& corners = surface->mesh->triangles[number];
-      if (std::find(corners.begin(), corners.end(), own) == corners.end()) return;
-      for (const int other : corners) {
-        const Vec3 away = surface->x.col(other) - x;
-        out = out && d.dot(away) <= 1e-9 * away.norm();
-      }
-    });
-    return out;
+    return !surface || steepest_edge(*surface, point.nodes[0], d) <= 1e-9;
+  }
+
+  /// As it is kept in a step.
+  static Vec3 normal_of(const Simplex& a, const Simplex& b) {
+    return contact::nearest(a, b, contact::facing(a, b)).normal;
+  }
+
+  /// Whether something with this normal can press on a point. The side of what slides over a surface stops at no point
+  /// that lies flat in it: from there the surface goes on towards that side, and something else is nearer.
+  bool can_press(const ContactSide& point, const Vec3& outward, const Vec3& n) const {
+    constexpr double kGoesOn = 0.5;  // the cosine
+    const Surface* surface = surfaces_.of(point.on);
+    return !surface || n.dot(outward) < contact::kAgainst || steepest_edge(*surface, point.nodes[0], -n) < kGoesOn;
   }
 
   /// Out of what a point is a corner of; zero of points of rods and of middles of what is round.
@@ -364,8 +365,13 @@ class Search {
     const Vec3 own = pose.R.transpose() * (point.x[0] - pose.p);
     ContactSide b;
     b.on = hard;
-    b.local = contact::nearest_part(shape_of(start_.model, hard), own, pose.R.transpose() * outward_of(a));
-    if (contact::nearest(contact::point_at(own, point.radius), b.local).gap < alarm_) add(a, b, part);
+    const contact::Shape& shape = shape_of(start_.model, hard);
+    const Vec3 outward = outward_of(a), there = pose.R.transpose() * outward;
+    if (point.radius == 0.0 && contact::grazes(shape, own, there)) return;
+    b.local = contact::nearest_part(shape, own, there);
+    const Simplex tip = contact::point_at(own, point.radius);
+    if (contact::nearest(tip, b.local).gap < alarm_ && can_press(a, outward, pose.R * normal_of(tip, b.local)))
+      add(a, b, part);
   }
 
   /// A thin point meets the nearest face. A thick one may lie in a hollow and touch many, so it meets all that it is in
@@ -413,13 +419,13 @@ class Search {
                    facing = n.normalized().dot(outward);
       if (distance >= least + same || (distance >= least - same && facing >= against)) return;
       // The far side of something thin, or round the corner of what the point is above.
-      if (!outward.isZero() && facing >= 0.0) return;
+      if (!outward.isZero() && (facing >= 0.0 || !can_press(a, outward, normal_of(point, face)))) return;
       least = std::min(least, distance);
       against = facing;
       nearest = b;
       nearest_face = number;
     });
-    if (!nearest || in_front) return;
+    if (!nearest || in_front || (!thick && grazes(surface, nearest_face, point.x[0], outward))) return;
     add(a, *nearest, key(part, prong, 0));
     if (!thick) add_valley(a, point, faced, surface, nearest_face, prong, part);
   }
@@ -448,9 +454,8 @@ class Search {
   }
 
   static double longest_edge(const Simplex& face) {
-    double edge = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) edge = std::max(edge, (face.x[i] - face.x[(i + 1) % 3]).norm());
-    return edge;
+    const auto& x = face.x;
+    return std::max({(x[0] - x[1]).norm(), (x[1] - x[2]).norm(), (x[2] - x[0]).norm()});
   }
 
   /// Whether a point and a triangle of the same surface are neighbours.
@@ -551,12 +556,8 @@ class Search {
   }
 
   static bool neighbours(const ContactSide& a, const ContactSide& b) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      for (std::size_t j = 0; j < 2; ++j) {
-        if (a.nodes[i] == b.nodes[j]) return true;
-      }
-    }
-    return false;
+    const auto of_b = [&b](int node) { return node == b.nodes[0] || node == b.nodes[1]; };
+    return of_b(a.nodes[0]) || of_b(a.nodes[1]);
   }
 
   static constexpr double kSame = 1e-9;        ///< part of an edge at whose ends two points are one

@@ -89,6 +89,35 @@ double distance_to_triangles(const Surface& surface, const Vec3& point, double f
   return least;
 }
 
+double steepest_edge(const Surface& surface, int point, const Vec3& d) {
+  const Vec3 x = surface.x.col(point);
+  double most = -1.0;
+  surface.faces.each_near(contact::Box(x), [&](int number) {
+    const std::array<int, 3>& corners = surface.mesh->triangles[number];
+    if (std::find(corners.begin(), corners.end(), point) == corners.end()) return;
+    for (const int other : corners) {
+      if (other != point) most = std::max(most, d.dot((surface.x.col(other) - x).normalized()));
+    }
+  });
+  return most;
+}
+
+bool grazes(const Surface& surface, int triangle, const Vec3& p, const Vec3& outward) {
+  const auto number = static_cast<std::size_t>(triangle);
+  const std::array<int, 3>& corners = surface.mesh->triangles[number];
+  const Vec3 front = surface.outward.faces.col(triangle);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int other = surface.mesh->beside[number][i];
+    if (other < 0) continue;
+    const Vec3 from = surface.x.col(corners[i]), to = surface.x.col(corners[(i + 1) % 3]),
+               opposite = surface.x.col(corners[(i + 2) % 3]), n = surface.outward.faces.col(other);
+    const double same = contact::kSamePlane * (to - from).norm();
+    if (std::abs(n.dot(p - from)) > same || n.dot(outward) >= contact::kAgainst) continue;
+    if (n.dot(opposite - from) < -same && front.dot(p - from) > same) return true;
+  }
+  return false;
+}
+
 std::optional<Vec3> outward_of_ridge(const Surface& surface, const contact::Ridge& ridge) {
   constexpr double kFlat = 0.985;  // cosine of 10 degrees
   const auto at = [&surface](int point) { return Vec3(surface.x.col(point)); };

@@ -40,6 +40,14 @@ class Surfaces {
 /// Beyond `far` others may be nearer.
 double distance_to_triangles(const Surface& surface, const Vec3& point, double far);
 
+/// The largest cosine between d, of length 1, and an edge that leaves a point of a surface: how much the surface goes
+/// on from there towards d.
+double steepest_edge(const Surface& surface, int point, const Vec3& d);
+
+/// Whether p, in front of a triangle, lies in the plane of one across a ridge of it that looks against `outward`, as
+/// contact::grazes has it.
+bool grazes(const Surface& surface, int triangle, const Vec3& p, const Vec3& outward);
+
 /// Between the normals of the two triangles beside a ridge; none where they lie in one plane, but for 10 degrees, or in
 /// a valley: points meet these.
 std::optional<Vec3> outward_of_ridge(const Surface& surface, const contact::Ridge& ridge);
