@@ -187,17 +187,20 @@ TEST(Faults, phantom_beside_face) {
   }
 }
 
-// Without friction the sides of what slides stopped at nodes of a soft block, and nodes at the side of a second floor:
-// momentum has nowhere to go.
-TEST(Faults, seams_stop_nothing) {
-  const RecordedRun brick = fault("brick_on_slab"), cube = fault("cube_over_seam");
-  ASSERT_TRUE(brick.done()) << brick.why();
-  EXPECT_NEAR(brick.last("brick.x"), 24e-3 + 0.3 * 0.2, 0.1e-3);
-  EXPECT_NEAR(brick.last("brick.y"), 3e-3, 0.1e-3);
-  ASSERT_TRUE(cube.done()) << cube.why();
-  const std::vector<double> way = cube.signal("cube.x");
-  const std::size_t last = way.size() - 1;
-  EXPECT_NEAR(way[last] - way[last - 50], way[100] - way[50], 1e-3 * (way[100] - way[50]));
+// A steel block that nothing meets makes a billionth of the largest force more than an arm weighs.
+TEST(Faults, light_beside_heavy) {
+  const auto beside = [](const char* size, const char* tolerance, bool told) {
+    SCOPED_TRACE(size);
+    const RecordedRun run = fault("light_beside_heavy", {std::string("bodies.rock.box.size=") + size,
+                                                         std::string("newton.tolerance=") + tolerance});
+    EXPECT_EQ(find_warning(run.loaded.model.warnings, "light_beside_heavy", "rods.arm") != nullptr, told);
+    return run.last("tip.x");
+  };
+  const double right = beside("[0.2, 0.2, 0.2]", "1e-9", false);
+  EXPECT_NEAR(beside("[2, 2, 2]", "1e-11", false), right, 1e-4);
+  EXPECT_GT(std::abs(beside("[2, 2, 2]", "1e-9", true) - right), 5e-4);
+  EXPECT_GT(std::abs(beside("[20, 20, 2]", "1e-9", true) - right), 5e-3);
+  beside("[20, 20, 2]", "1e-12", true);  // (rounding alone)
 }
 
 // A capsule and a box that overlap by 1.2 mm at the start.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "support/faults.hpp"
 #include "support/scenes.hpp"
@@ -172,6 +173,19 @@ TEST(StoppedRuns, corner_in_valley) {
     EXPECT_LT(iterations_of(run), 400);
     EXPECT_FALSE(run.warning("snapped"));
   }
+}
+
+// Without friction the sides of what slides stopped at nodes of a soft block, and nodes at the side of a second floor:
+// momentum has nowhere to go.
+TEST(StoppedRuns, seams_stop_nothing) {
+  const RecordedRun brick = fault("brick_on_slab"), cube = fault("cube_over_seam");
+  ASSERT_TRUE(brick.done()) << brick.why();
+  EXPECT_NEAR(brick.last("brick.x"), 24e-3 + 0.3 * 0.2, 0.1e-3);
+  EXPECT_NEAR(brick.last("brick.y"), 3e-3, 0.1e-3);
+  ASSERT_TRUE(cube.done()) << cube.why();
+  const std::vector<double> way = cube.signal("cube.x");
+  const std::size_t last = way.size() - 1;
+  EXPECT_NEAR(way[last] - way[last - 50], way[100] - way[50], 1e-3 * (way[100] - way[50]));
 }
 
 // A capsule is thrown at a thin rod, which folds round it: it runs at any step, or says what does not converge.

@@ -255,6 +255,43 @@ void warn_of_flat_rods(Model& model) {
   }
 }
 
+/// Steps converge to a part of the largest force anywhere: beside what is heavy, what is light may not be balanced.
+void warn_of_light_objects(Model& model) {
+  constexpr double kLost = 0.01;  // of a weight: what it costs in the deflection
+  struct Weight {
+    std::string name;
+    double mass = 0.0;
+  };
+  std::vector<Weight> all;
+  for (const SolidModel& own : model.solids) all.push_back({"solids." + own.name, own.body.masses.sum()});
+  for (const RodModel& own : model.rods) {
+    double mass = 0.0;
+    for (const rod::MassPoint& point : own.rod.masses) mass += point.mass;
+    all.push_back({"rods." + own.name, mass});
+  }
+  for (const BodyModel& own : model.bodies) all.push_back({"bodies." + own.name, own.body.mass});
+  std::erase_if(all, [](const Weight& own) { return own.mass <= 0.0; });
+  const double g = model.scene.gravity.norm(), tolerance = model.scene.newton.tolerance;
+  if (all.empty() || g == 0.0 || model.scene.newton.iterations > 0) return;
+  const auto [light, heavy] =
+      std::minmax_element(all.begin(), all.end(), [](const Weight& a, const Weight& b) { return a.mass < b.mass; });
+  // In motion the rounding of its place leaves forces, too (`convergence_of`).
+  const double step = model.scene.analysis == Analysis::dynamic ? model.scene.time.step : INFINITY;
+  const double by_weight = heavy->mass / light->mass, rounded = 1e-14 * by_weight * model.size / (step * step * g),
+               left = tolerance * by_weight + rounded;
+  if (left <= kLost) return;
+  const double enough = std::pow(10.0, std::floor(std::log10(0.5 * kLost / by_weight)));
+  model.warnings.push_back({.code = "light_beside_heavy",
+                            .where = light->name,
+                            .message = "forces are balanced to " + text(tolerance) + " of the largest, the weight of " +
+                                       heavy->name + " of " + text(heavy->mass * g) + " N, and " + light->name +
+                                       " weighs " + text(light->mass * g) + " N",
+                            .remedy = "make " + heavy->name + " an obstacle, or check its density and its units" +
+                                      (rounded < 0.5 * kLost ? ", or take newton.tolerance = " + text(enough) : ""),
+                            .value = left,
+                            .limit = kLost});
+}
+
 }  // namespace
 
 Model build(const Scene& scene, const MeshReader& read_mesh) {
@@ -365,6 +402,7 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
   for (EffectorModel& effector : model.effectors) effector.start = effector_value(model, start, effector);
   warn_of_units(model);
   warn_of_flat_rods(model);
+  warn_of_light_objects(model);
   warn_of_tables(model);
   for (const RodState& rod : start.rods) model.start_masses.push_back(rod.masses);
   model.start_energy = energy_balance(model, start).total();
