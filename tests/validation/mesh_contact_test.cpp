@@ -385,6 +385,86 @@ TEST(MeshContact, SeamsOfALevelFloorStopNothing) {
   }
 }
 
+/// A block of 20 x 10 mm that rises out of a floor at z = 0, of one surface.
+solid::Mesh floor_with_block(double height) {
+  solid::Mesh mesh;
+  mesh.nodes.resize(3, 16);
+  const auto ring = [&mesh](int first, double x0, double x1, double y0, double y1, double z) {
+    const std::array<std::array<double, 2>, 4> corners = {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}};
+    for (int i = 0; i < 4; ++i) {
+      const auto [x, y] = corners[static_cast<std::size_t>(i)];
+      mesh.nodes.col(first + i) = Vec3(x, y, z);
+    }
+  };
+  ring(0, 0, 20 * mm, 0, 10 * mm, height);
+  ring(4, 0, 20 * mm, 0, 10 * mm, 0);
+  ring(8, -20 * mm, 120 * mm, -100 * mm, 100 * mm, 0);
+  ring(12, -20 * mm, 120 * mm, -100 * mm, 100 * mm, -20 * mm);
+  mesh.faces = {{0, 1, 2}, {0, 2, 3}, {12, 14, 13}, {12, 15, 14}};
+  for (const int upper : {0, 4, 8}) {
+    for (int i = 0; i < 4; ++i) {
+      const int next = (i + 1) % 4;
+      mesh.faces.push_back({upper + 4 + i, upper + 4 + next, upper + next});
+      mesh.faces.push_back({upper + 4 + i, upper + next, upper + i});
+    }
+  }
+  return mesh;
+}
+
+/// Beside and above a block the planes of its sides hold nothing.
+TEST(MeshContact, ValleysEndWithTheirEdges) {
+  const auto meshes = named({{"high.stl", floor_with_block(10 * mm)},
+                             {"low.stl", floor_with_block(0.2 * mm)},
+                             {"brick.stl", box_surface(Vec3(10 * mm, 10 * mm, 5 * mm))}});
+  struct Way {
+    const char* floor;
+    double g, y, z;  // [m/s^2], m
+  };
+  for (const auto& [floor, g, y, z] :
+       {Way{"high.stl", kGravity, 17 * mm, 0.0}, Way{"low.stl", 0.0, 5 * mm, 0.5 * mm}}) {
+    SCOPED_TRACE(std::string(floor) + ", y " + std::to_string(y) + ", z " + std::to_string(z));
+    Scene scene = on_floor(2e-3, 0.2, 0.0);
+    scene.gravity = Vec3(0, 0, -g);
+    scene.obstacles.clear();
+    scene.obstacles.emplace_back("floor", obstacle(mesh_of(floor), Vec3::Zero()));
+    RigidBody brick = box_of(1.0, 5e-4, Vec3(-7.7 * mm, y, z + 2.5 * mm));
+    brick.shape = mesh_of("brick.stl");
+    brick.velocity = Vec3(0.5, 0, 0);
+    scene.bodies.emplace_back("brick", brick);
+    const rigid::Motion at = end_of(build(scene, reader(meshes))).bodies[0];
+    EXPECT_NEAR((at.p - Vec3(92.3 * mm, y, z + 2.5 * mm)).norm(), 0.0, 1e-6);
+    EXPECT_NEAR((at.v - Vec3(0.5, 0, 0)).norm(), 0.0, 1e-5);
+  }
+}
+
+/// A cube that flies down at a block from exactly as high as its top hits it, or the run stops and says so.
+TEST(MeshContact, WhatFliesPastARimHitsIt) {
+  const auto meshes = named({{"cube.stl", box_surface(Vec3::Constant(20 * mm))}});
+  for (const double speed : {0.5, 1.0, 2.5, 8.0}) {
+    for (int kind = 0; kind < 4; ++kind) {
+      SCOPED_TRACE(std::to_string(speed) + " m/s, " + std::to_string(kind));
+      Scene scene = on_floor(5e-3, 0.05, 0.0);
+      scene.gravity = Vec3::Zero();
+      scene.obstacles.clear();
+      const BoxShape box{Vec3::Constant(20 * mm)};
+      scene.obstacles.emplace_back(
+          "block", kind < 2 ? obstacle(box, Vec3::Zero()) : obstacle(mesh_of("cube.stl"), Vec3::Zero()));
+      RigidBody cube = box_of(20 * mm, 8e-3, Vec3(21 * mm, 3 * mm, 20 * mm));
+      if (kind % 2 == 1) cube.shape = mesh_of("cube.stl");
+      cube.velocity = speed * Vec3(-1, 0, -1);
+      scene.bodies.emplace_back("cube", cube);
+      const Model model = build(scene, reader(meshes));
+      State end = initial_state(model);
+      const RunEnd how = run(model, initial_state(model), [&](const State& state, const StepReport&) {
+        end = state;
+        return true;
+      });
+      if (how != RunEnd::done) continue;
+      EXPECT_LT(end.bodies[0].v.squaredNorm(), 0.6 * cube.velocity.squaredNorm());
+    }
+  }
+}
+
 /// What overlaps is told by how much, and moved apart; what is only fast, or about to be moved, is not told.
 TEST(MeshContact, OverlapsAtTheStartAreToldAndMended) {
   const auto meshes = named({{"slab.stl", box_surface(Vec3(100 * mm, 100 * mm, 20 * mm))},

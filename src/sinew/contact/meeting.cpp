@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -140,6 +141,21 @@ class Meet {
   /// Two of Convex.
   void polyhedra(const Shape& first, const Pose& at, const Shape& second, const Pose& there);
 
+  /// Meeting::grazed of those that `polyhedra` has found, from one on.
+  void find_grazed(const Pose& at, const Pose& there, std::size_t from) {
+    if (!touched_) return;
+    for (std::size_t k = from; k < found_.size(); ++k) {
+      Meeting& own = found_[k];
+      const Simplex a = moved(own.swapped ? there : at, own.a), b = moved(own.swapped ? at : there, own.b);
+      const Nearest found = nearest(a, b);
+      Vec3 p = Vec3::Zero();
+      for (std::size_t i = 0; i < static_cast<std::size_t>(a.corners()); ++i) p += found.a[i] * a.x[i];
+      const auto height = [&](const Vec3& x) { return touched_->normal.dot(x - touched_->x[0]); };
+      const Vec3 foot = p - found.gap * found.normal;
+      if (std::abs(height(p)) <= same_ && std::abs(height(foot)) <= same_) own.grazed = touched_->normal;
+    }
+  }
+
  private:
   /// Adds the corners of both that are as near to the other one as any, or as `least`, but for `some` [m], with the
   /// parts that they are near to.
@@ -156,6 +172,8 @@ class Meet {
   void axis_inside(const Simplex& axis, const Pose& at, const Polyhedron& own, const Pose& there, bool swapped);
   double alarm_;
   std::vector<Meeting>& found_;
+  std::optional<Simplex> touched_;  ///< plane in the world in which two polyhedra lie beside each other
+  double same_ = 0.0;               ///< [m] within which what lies in a plane is in it
 };
 
 template <class Wanted>
@@ -229,20 +247,20 @@ void Meet::axis_inside(const Simplex& axis, const Pose& at, const Polyhedron& ow
         key(swapped ? Kind::face_of_first : Kind::face_of_second, face, number++), swapped);
 }
 
-/// Largest distance of Q from the plane of a face of P, over all faces; and whether the plane of one of them is
-/// touched, but for `graze`.
+/// Largest distance of Q from the plane of a face of P, over all faces; and a face in whose plane Q begins, but for
+/// `same`.
 struct FaceAxis {
   double separation = -INFINITY;
   std::size_t face = 0;
-  bool grazes = false;
+  std::optional<std::size_t> touched;
 };
-FaceAxis best_face(const Polyhedron& P, const std::vector<Vec3>& Q_in_P, double graze) {
+FaceAxis best_face(const Polyhedron& P, const std::vector<Vec3>& Q_in_P, double same) {
   FaceAxis best;
   for (std::size_t f = 0; f < P.faces.size(); ++f) {
     const Vec3 &n = P.normals[f], &x = P.corners[P.faces[f][0]];
     double least = INFINITY;
     for (const Vec3& corner : Q_in_P) least = std::min(least, n.dot(corner - x));
-    best.grazes = best.grazes || std::abs(least) <= graze;
+    if (std::abs(least) <= same) best.touched = f;
     if (least <= best.separation) continue;
     best.separation = least;
     best.face = f;
@@ -345,15 +363,20 @@ void Meet::polyhedra(const Shape& first, const Pose& at, const Shape& second, co
   for (const Vec3& corner : P.corners) P_in_Q.push_back(P_to_Q * corner);
   double size = 0.0;
   for (const Vec3& corner : P.corners) size = std::max(size, corner.norm());
-  const double graze = kSamePlane * size;
-  const FaceAxis of_P = best_face(P, Q_in_P, graze);
+  same_ = kSamePlane * size;
+  const FaceAxis of_P = best_face(P, Q_in_P, same_);
   if (of_P.separation >= alarm_) return;
-  const FaceAxis of_Q = best_face(Q, P_in_Q, graze);
+  const FaceAxis of_Q = best_face(Q, P_in_Q, same_);
   if (of_Q.separation >= alarm_) return;
   const EdgeAxis edges = best_edges(P, Q, Q_in_P, Q_to_P);
   if (edges.separation >= alarm_) return;
-  // What slides in the plane of a face towards that face does not stop at its rim.
-  if ((of_P.grazes || of_Q.grazes) && std::max(of_P.separation, of_Q.separation) > graze) return;
+  if (std::max(of_P.separation, of_Q.separation) > same_ && (of_P.touched || of_Q.touched)) {
+    const bool of_first = of_P.touched.has_value();
+    const Polyhedron& own = of_first ? P : Q;
+    const Pose& pose = of_first ? at : there;
+    const std::size_t f = of_first ? *of_P.touched : *of_Q.touched;
+    touched_ = plane_at(pose * own.corners[own.faces[f][0]], pose.R * own.normals[f]);
+  }
   // Faces where they say about the same: their patch does not flicker.
   const double clearly = 1e-3 * size;
   const auto add_edges = [&] {
@@ -444,7 +467,9 @@ void meet(const Shape& first, const Pose& at, const Shape& second, const Pose& t
     if (!cylinder) return shape;
     return room = Convex{prism(*cylinder)};
   };
+  const std::size_t before = found.size();
   meeting.polyhedra(flat(first, prisms[0]), at, flat(second, prisms[1]), there);
+  meeting.find_grazed(at, there, before);
 }
 
 }  // namespace sinew::contact

@@ -23,6 +23,9 @@ struct Meeting {
   Simplex a, b;
   std::uint64_t key = 0;
   bool swapped = false;  ///< a is of the second shape, b of the first
+  /// In the world, of length 1: normal of a face in whose plane two polyhedra lie beside each other, and this meeting
+  /// with it; zero where there is none.
+  Vec3 grazed = Vec3::Zero();
 };
 
 /// Adds all that may touch where the shapes come nearer than `alarm` [m]. Two polyhedra meet along the axis that

@@ -295,25 +295,26 @@ Simplex edge_of(const Polyhedron& own, std::size_t e) {
 
 Polyhedron prism(const Cylinder& cylinder) { return prism(cylinder.radius, cylinder.length, kPrismSides); }
 Skin skin(const Shape& shape, double size) { return std::visit(SkinOf{size}, shape); }
-bool grazes(const Shape& shape, const Vec3& p, const Vec3& outward) {
-  const auto look_against = [&outward](const Vec3& n) { return n.dot(outward) < kAgainst; };
+Vec3 grazed_plane(const Shape& shape, const Vec3& p, const Simplex& part, const Vec3& outward) {
+  const Nearest found = nearest(point_at(p, 0.0), part);
+  const Vec3 foot = p - found.gap * found.normal;
+  const auto grazes = [&](const Vec3& n, double height, double same) {
+    return found.gap > same && n.dot(outward) < kAgainst && std::abs(n.dot(p) - height) <= same &&
+           std::abs(n.dot(foot) - height) <= same;
+  };
   if (const Cylinder* const own = std::get_if<Cylinder>(&shape)) {
-    const double same = kSamePlane * std::max(own->radius, own->length);
     const Vec3 up(0.0, 0.0, std::copysign(1.0, p.z()));
-    return std::abs(std::abs(p.z()) - 0.5 * own->length) <= same && p.head<2>().norm() > own->radius + same &&
-           look_against(up);
+    return grazes(up, 0.5 * own->length, kSamePlane * std::max(own->radius, own->length)) ? up : Vec3(Vec3::Zero());
   }
-  const Convex* const own = std::get_if<Convex>(&shape);
-  if (!own) return false;
-  const Polyhedron& surface = own->surface;
-  const double same = kSamePlane * surface.corners[0].norm();
-  bool in_plane = false, beside = false;
-  for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-    const double h = surface.normals[f].dot(p - surface.corners[surface.faces[f][0]]);
-    beside = beside || h > same;
-    in_plane = in_plane || (std::abs(h) <= same && look_against(surface.normals[f]));
+  if (const Convex* const own = std::get_if<Convex>(&shape)) {
+    const Polyhedron& surface = own->surface;
+    const double same = kSamePlane * surface.corners[0].norm();
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+      const Vec3& n = surface.normals[f];
+      if (grazes(n, n.dot(surface.corners[surface.faces[f][0]]), same)) return n;
+    }
   }
-  return in_plane && beside;
+  return Vec3::Zero();
 }
 Simplex nearest_part(const Shape& shape, const Vec3& p, const Vec3& outward) {
   return std::visit(NearestPart{p, outward}, shape);

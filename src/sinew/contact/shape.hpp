@@ -54,9 +54,10 @@ inline constexpr double kSamePlane = 1e-6;
 /// Cosine of the angle to its outside below which a face looks against a point.
 inline constexpr double kAgainst = -0.2;
 
-/// Whether p lies beside a face in its plane, and that face looks against `outward`, the outside of what p belongs to:
-/// what slides there towards the face does not stop at its rim.
-bool grazes(const Shape& shape, const Vec3& p, const Vec3& outward);
+/// The normal of a face in whose plane p lies beside it, but for rounding, and so does where p is nearest to `part`; of
+/// a face that looks against `outward`, the outside of what p belongs to. Zero where there is none. What slides in that
+/// plane does not stop at the rim of the face.
+Vec3 grazed_plane(const Shape& shape, const Vec3& p, const Simplex& part, const Vec3& outward);
 
 /// An edge of a polyhedron; its normal is between those of its two faces.
 Simplex edge_of(const Polyhedron& own, std::size_t edge);

@@ -127,6 +127,13 @@ void along_distance(const Simplex& a, const Simplex& b, const Vec3& otherwise, N
   found.gap = distance;
 }
 
+/// Whether a point with these weights of its nearest point is over a triangle or, in a valley, in front of its edge.
+bool over_face(const Simplex& b, const std::array<double, 3>& weights) {
+  const auto there = [&weights](int corner) { return weights[static_cast<std::size_t>(corner % 3)] > 0.0; };
+  if (b.valley >= 0) return there(b.valley) && there(b.valley + 1);
+  return there(0) && there(1) && there(2);
+}
+
 }  // namespace
 
 Nearest nearest(const Simplex& a, const Simplex& b) {
@@ -163,12 +170,12 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
         found.b = on_triangle(p, b.x[0], b.x[1], b.x[2]);
         const Vec3 n = (b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]).normalized();
         const Vec3 d = p - point_of(b, found.b);
-        if (b.in_valley || (found.b[0] > 0.0 && found.b[1] > 0.0 && found.b[2] > 0.0)) {
+        if (over_face(b, found.b)) {
           found.normal = n;
           found.gap = n.dot(d);
         } else {
           along_distance(a, b, n, found);
-          if (d.dot(b.normal.isZero() ? n : b.normal) < 0.0) {
+          if (b.valley < 0 && d.dot(b.normal.isZero() ? n : b.normal) < 0.0) {
             found.normal = -found.normal;
             found.gap = -found.gap;
           }
@@ -208,7 +215,7 @@ Facing facing(const Simplex& a, const Simplex& b) {
   if (b.kind == plane) return {face, found.normal};
   if (b.kind == triangle) {
     const double edge = std::max((b.x[1] - b.x[0]).norm(), (b.x[2] - b.x[0]).norm());
-    if (thin && (b.in_valley || inside(found.b, 3) || std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
+    if (thin && (b.valley >= 0 || inside(found.b, 3) || std::abs(found.gap) < 1e-3 * edge)) return {face, found.normal};
   }
   if (a.kind == segment && b.kind == segment && inside(found.a, 2) && inside(found.b, 2) && !b.normal.isZero() &&
       !across(a, b).isZero(0.0))
@@ -226,6 +233,7 @@ Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
     }
     return found;
   }
+  if (b.valley >= 0 && !over_face(b, found.b)) return found;
   found.normal = kept.normal;
   if (kept.kind == Facing::Kind::face) found.normal = face_normal(b);
   if (kept.kind == Facing::Kind::crossing) {

@@ -24,8 +24,9 @@ struct Simplex {
   /// Of a circle: from its middle to where it was lowest when it was found, of length 1. What lies flat, but for
   /// kFlatRim, has its lowest point there: where rounding tips it would make that jump about.
   Vec3 low = Vec3::Zero();
-  /// Of a triangle in a valley of its surface: its plane goes on past its rim, below the face on the other side.
-  bool in_valley = false;
+  /// Of a triangle in a valley of its surface, from the face across its edge from corner `valley` to the next: in front
+  /// of that edge its plane goes on past it, below that face. -1 of all others.
+  int valley = -1;
   int corners() const { return kind == Kind::triangle ? 3 : kind == Kind::segment ? 2 : 1; }
 };
 

@@ -293,10 +293,9 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     if (fresh) place->second = farthest(motion, room.surfaces, own);
     return place->second;
   };
-  const auto is_pressed = [&next](std::size_t pair) {
-    return std::any_of(next.contacts.begin(), next.contacts.end(), [pair](const ContactState& contact) {
-      return contact.pair == static_cast<int>(pair) && !contact.force.isZero(0.0);
-    });
+  const auto was_near = [&room](std::size_t pair) {
+    return std::any_of(room.found.begin(), room.found.end(),
+                       [pair](const ContactKey& own) { return own.first == static_cast<int>(pair); });
   };
   std::vector<ContactState> candidates;
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
@@ -313,7 +312,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
       return depth_between_triangles(now, surfaces, static_cast<int>(i)) - pair.depth;
     };
     // (No deeper at the end than at the start and what the two have moved.)
-    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b)) && is_pressed(i) &&
+    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b)) &&
         cut_at(start, room.surfaces) + speed > kDeepestBetween * thin) {
       if (!ended) ended.emplace().fit(end);
       const double cut = cut_at(end, *ended);
@@ -321,8 +320,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
       note(Passage::Kind::cut, i, cut, kDeepest * thin);
     }
     const bool shapes = are_shapes(model, pair);
-    const bool known = shapes && std::any_of(room.found.begin(), room.found.end(),
-                                             [i](const auto& part) { return part.first == static_cast<int>(i); });
+    const bool known = shapes && was_near(i);
     if (known) {  // parts that were not listed may have come in
       const double depth = overlap_of_shapes(motion, pair, 1.0) - pair.depth;
       note_overlap(i, depth, 0.0);

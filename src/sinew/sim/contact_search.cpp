@@ -25,8 +25,9 @@ class Search {
     shallow_ = depth_;
     depth_ = std::max(depth_, own.depth);
     if (are_shapes(start_.model, own)) {
-      each_meeting(own, alarm_,
-                   [this](const ContactSide& a, const ContactSide& b, std::uint64_t key) { add(a, b, key); });
+      each_meeting(own, alarm_, [this](const ContactSide& a, const ContactSide& b, const contact::Meeting& met) {
+        add(a, b, met.key, met.grazed);
+      });
       return;
     }
     if (!whole_pieces && !around(own.a).intersects(around(own.b))) return;
@@ -55,7 +56,7 @@ class Search {
     if (own.a == own.b) return 0.0;
     double deepest = 0.0;
     if (are_shapes(start_.model, own)) {
-      each_meeting(own, 0.0, [&](const ContactSide& a, const ContactSide& b, std::uint64_t) {
+      each_meeting(own, 0.0, [&](const ContactSide& a, const ContactSide& b, const contact::Meeting&) {
         deepest = std::max(deepest, -contact::nearest(start_.placed(a), start_.placed(b)).gap);
       });
       return deepest;
@@ -85,7 +86,7 @@ class Search {
 
   double depth_between_triangles(int number) const {
     const PairModel& own = start_.model.pairs[static_cast<std::size_t>(number)];
-    if (own.a == own.b) return 0.0;
+    if (own.a == own.b || !around(own.a).intersects(around(own.b))) return 0.0;
     return std::max(depth_of_edges(own.a, own.b), depth_of_edges(own.b, own.a));
   }
 
@@ -159,9 +160,11 @@ class Search {
     return false;
   }
 
-  void add(const ContactSide& a, const ContactSide& b, std::uint64_t part) {
+  /// `grazed`: normal of the plane in which the two lie beside each other, if they do.
+  void add(const ContactSide& a, const ContactSide& b, std::uint64_t part, const Vec3& grazed = Vec3::Zero()) {
     if (!moves(a) && !moves(b)) return;
     ContactState& own = found_.emplace_back();
+    own.grazed = grazed;
     own.pair = pair_;
     own.on_second = a.on != start_.model.pairs[pair_].a;
     own.part = part;
@@ -180,7 +183,7 @@ class Search {
       b.on = met.swapped ? pair.a : pair.b;
       a.local = met.a;
       b.local = met.b;
-      visit(a, b, met.key);
+      visit(a, b, met);
     }
   }
 
@@ -340,15 +343,15 @@ class Search {
     return !surface || steepest_edge(*surface, point.nodes[0], d) <= 1e-9;
   }
 
-  /// As it is kept in a step.
+  /// The normal that a contact of two parts keeps in a step.
   static Vec3 normal_of(const Simplex& a, const Simplex& b) {
     return contact::nearest(a, b, contact::facing(a, b)).normal;
   }
 
   /// Whether something with this normal can press on a point. The side of what slides over a surface stops at no point
-  /// that lies flat in it: from there the surface goes on towards that side, and something else is nearer.
+  /// before it that lies flat in it: from there the surface goes on towards that side, and something else is nearer.
   bool can_press(const ContactSide& point, const Vec3& outward, const Vec3& n) const {
-    constexpr double kGoesOn = 0.5;  // the cosine
+    constexpr double kGoesOn = 0.5;  // the cosine of 60 degrees
     const Surface* surface = surfaces_.of(point.on);
     return !surface || n.dot(outward) < contact::kAgainst || steepest_edge(*surface, point.nodes[0], -n) < kGoesOn;
   }
@@ -367,11 +370,12 @@ class Search {
     b.on = hard;
     const contact::Shape& shape = shape_of(start_.model, hard);
     const Vec3 outward = outward_of(a), there = pose.R.transpose() * outward;
-    if (point.radius == 0.0 && contact::grazes(shape, own, there)) return;
     b.local = contact::nearest_part(shape, own, there);
+    const Vec3 grazed = point.radius == 0.0 ? contact::grazed_plane(shape, own, b.local, there) : Vec3(Vec3::Zero());
     const Simplex tip = contact::point_at(own, point.radius);
-    if (contact::nearest(tip, b.local).gap < alarm_ && can_press(a, outward, pose.R * normal_of(tip, b.local)))
-      add(a, b, part);
+    const double gap = contact::nearest(tip, b.local).gap;
+    if (gap < alarm_ && (gap <= 0.0 || can_press(a, outward, pose.R * normal_of(tip, b.local))))
+      add(a, b, part, pose.R * grazed);
   }
 
   /// A thin point meets the nearest face. A thick one may lie in a hollow and touch many, so it meets all that it is in
@@ -419,50 +423,47 @@ class Search {
                    facing = n.normalized().dot(outward);
       if (distance >= least + same || (distance >= least - same && facing >= against)) return;
       // The far side of something thin, or round the corner of what the point is above.
-      if (!outward.isZero() && (facing >= 0.0 || !can_press(a, outward, normal_of(point, face)))) return;
+      if (!outward.isZero() && (facing >= 0.0 || (found.gap > 0.0 && !can_press(a, outward, normal_of(point, face)))))
+        return;
       least = std::min(least, distance);
       against = facing;
       nearest = b;
       nearest_face = number;
     });
-    if (!nearest || in_front || (!thick && grazes(surface, nearest_face, point.x[0], outward))) return;
-    add(a, *nearest, key(part, prong, 0));
+    if (!nearest || in_front) return;
+    add(a, *nearest, key(part, prong, 0),
+        thick ? Vec3(Vec3::Zero()) : grazed_plane(surface, nearest_face, point.x[0], outward));
     if (!thick) add_valley(a, point, faced, surface, nearest_face, prong, part);
   }
 
-  /// In a valley a thin point touches both sides: of the faces across the edges near the point, those that rise.
+  /// In a valley a thin point touches both sides. Of the triangles across the edges of the one that it is over, it also
+  /// meets those that rise from there above it, and not by rounding alone.
   void add_valley(const ContactSide& a, const Simplex& point, const Collider& faced, const Surface& surface, int face,
                   int prong, Part part) {
-    constexpr double kRises = 1e-3;  // the sine of the angle between both sides
-    constexpr double kNear = 0.5;    // of the longest edge
+    constexpr double kSteep = 1e-3;  // the least sine of the angle between both sides
+    constexpr double kNear = 0.5;    // the farthest from the edge, in longest edges
     const contact::Mesh& mesh = *surface.mesh;
     const auto number = static_cast<std::size_t>(face);
-    const Simplex here = start_.placed(part_of(faced, surface, Simplex::Kind::triangle, mesh.triangles[number]));
+    const std::array<int, 3>& corners = mesh.triangles[number];
+    const Simplex here = start_.placed(part_of(faced, surface, Simplex::Kind::triangle, corners));
+    const Vec3 &x = point.x[0], up = surface.outward.faces.col(face);
     for (std::size_t i = 0; i < 3; ++i) {
       const int other = mesh.beside[number][i];
       if (other < 0) continue;
-      const std::array<int, 3>& corners = mesh.triangles[static_cast<std::size_t>(other)];
-      if (a.on == faced && near_at_rest(mesh, a.nodes[0], corners)) continue;
-      const Vec3 &from = here.x[i], &to = here.x[(i + 1) % 3], &x = point.x[0], n = surface.outward.faces.col(other);
+      const std::array<int, 3>& across = mesh.triangles[static_cast<std::size_t>(other)];
+      const auto shared = std::find(across.begin(), across.end(), corners[(i + 1) % 3]) - across.begin();
+      const Vec3 &from = here.x[i], &to = here.x[(i + 1) % 3], n = surface.outward.faces.col(other);
+      const double rise = up.dot(surface.x.col(across[static_cast<std::size_t>(shared + 2) % 3]) - from);
+      if (rise <= contact::kSamePlane * start_.model.size || up.dot(x - from) >= rise) continue;
       const Vec3 side = here.x[(i + 2) % 3] - from;
       const auto [s, t] = contact::on_segment(x, from, to);
-      if (n.dot(side) <= kRises * side.norm() || (x - s * from - t * to).norm() > kNear * longest_edge(here)) continue;
-      ContactSide b = part_of(faced, surface, Simplex::Kind::triangle, corners);
-      b.local.in_valley = true;
+      if (s == 0.0 || t == 0.0 || n.dot(side) <= kSteep * side.norm()) continue;
+      if ((x - s * from - t * to).norm() > kNear * longest_edge(here)) continue;
+      if (a.on == faced && near_at_rest(mesh, a.nodes[0], across)) continue;
+      ContactSide b = part_of(faced, surface, Simplex::Kind::triangle, across);
+      b.local.valley = static_cast<int>(shared);
       if (matters(n.dot(x - from))) add(a, b, key(part, prong, other + 1));
     }
-  }
-
-  static double longest_edge(const Simplex& face) {
-    const auto& x = face.x;
-    return std::max({(x[0] - x[1]).norm(), (x[1] - x[2]).norm(), (x[2] - x[0]).norm()});
-  }
-
-  /// Whether a point and a triangle of the same surface are neighbours.
-  static bool near_at_rest(const contact::Mesh& mesh, int node, const std::array<int, 3>& face) {
-    const auto at = [&](int n) { return Vec3(mesh.points.col(n)); };
-    const Simplex rest{Simplex::Kind::triangle, {at(face[0]), at(face[1]), at(face[2])}, Vec3::Zero(), 0.0};
-    return std::abs(contact::nearest(contact::point_at(at(node), 0.0), rest).gap) < 0.5 * longest_edge(rest);
   }
 
   struct Edge {

@@ -89,6 +89,18 @@ double distance_to_triangles(const Surface& surface, const Vec3& point, double f
   return least;
 }
 
+double longest_edge(const contact::Simplex& face) {
+  const auto& x = face.x;
+  return std::max({(x[0] - x[1]).norm(), (x[1] - x[2]).norm(), (x[2] - x[0]).norm()});
+}
+
+bool near_at_rest(const contact::Mesh& mesh, int node, const std::array<int, 3>& face) {
+  const auto at = [&](int n) { return Vec3(mesh.points.col(n)); };
+  const contact::Simplex rest{
+      contact::Simplex::Kind::triangle, {at(face[0]), at(face[1]), at(face[2])}, Vec3::Zero(), 0.0};
+  return std::abs(contact::nearest(contact::point_at(at(node), 0.0), rest).gap) < 0.5 * longest_edge(rest);
+}
+
 double steepest_edge(const Surface& surface, int point, const Vec3& d) {
   const Vec3 x = surface.x.col(point);
   double most = -1.0;
@@ -102,20 +114,22 @@ double steepest_edge(const Surface& surface, int point, const Vec3& d) {
   return most;
 }
 
-bool grazes(const Surface& surface, int triangle, const Vec3& p, const Vec3& outward) {
+Vec3 grazed_plane(const Surface& surface, int triangle, const Vec3& p, const Vec3& outward) {
   const auto number = static_cast<std::size_t>(triangle);
   const std::array<int, 3>& corners = surface.mesh->triangles[number];
   const Vec3 front = surface.outward.faces.col(triangle);
   for (std::size_t i = 0; i < 3; ++i) {
     const int other = surface.mesh->beside[number][i];
     if (other < 0) continue;
+    Vec3 n = surface.outward.faces.col(other);
     const Vec3 from = surface.x.col(corners[i]), to = surface.x.col(corners[(i + 1) % 3]),
-               opposite = surface.x.col(corners[(i + 2) % 3]), n = surface.outward.faces.col(other);
-    const double same = contact::kSamePlane * (to - from).norm();
-    if (std::abs(n.dot(p - from)) > same || n.dot(outward) >= contact::kAgainst) continue;
-    if (n.dot(opposite - from) < -same && front.dot(p - from) > same) return true;
+               opposite = surface.x.col(corners[(i + 2) % 3]);
+    const double same = contact::kSamePlane * (to - from).norm(), before = front.dot(p - from);
+    if (std::abs(n.dot(p - from)) > same || n.dot(outward) >= contact::kAgainst || before <= same) continue;
+    // (Where the point is nearest to the triangle is in that plane, too.)
+    if (n.dot(opposite - from) < -same && std::abs(n.dot(p - before * front - from)) <= same) return n;
   }
-  return false;
+  return Vec3::Zero();
 }
 
 std::optional<Vec3> outward_of_ridge(const Surface& surface, const contact::Ridge& ridge) {

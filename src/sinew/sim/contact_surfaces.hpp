@@ -40,13 +40,17 @@ class Surfaces {
 /// Beyond `far` others may be nearer.
 double distance_to_triangles(const Surface& surface, const Vec3& point, double far);
 
+double longest_edge(const contact::Simplex& face);
+
+/// Whether a point and a triangle of the same surface are neighbours.
+bool near_at_rest(const contact::Mesh& mesh, int node, const std::array<int, 3>& face);
+
 /// The largest cosine between d, of length 1, and an edge that leaves a point of a surface: how much the surface goes
 /// on from there towards d.
 double steepest_edge(const Surface& surface, int point, const Vec3& d);
 
-/// Whether p, in front of a triangle, lies in the plane of one across a ridge of it that looks against `outward`, as
-/// contact::grazes has it.
-bool grazes(const Surface& surface, int triangle, const Vec3& p, const Vec3& outward);
+/// contact::grazed_plane of a surface, to whose triangle p is nearest: of the planes across its ridges.
+Vec3 grazed_plane(const Surface& surface, int triangle, const Vec3& p, const Vec3& outward);
 
 /// Between the normals of the two triangles beside a ridge; none where they lie in one plane, but for 10 degrees, or in
 /// a valley: points meet these.

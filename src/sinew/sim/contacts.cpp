@@ -128,6 +128,17 @@ void play(ContactRoom& room, int contact) {
   if (place == room.playing.end() || *place != contact) room.playing.insert(place, contact);
 }
 
+/// Of what lies in the plane of a face beside it: by less than this part of a thickness in a step it slides on in it.
+constexpr double kSlides = 1e-3;
+/// [m/s] of one side of a contact past the other, along a direction, at the start of the step.
+double speed_along(const StepContext& context, const ContactState& own, const Moment& start, const Vec3& direction) {
+  const Simplex a = start.placed(own.a), b = start.placed(own.b);
+  const contact::Nearest nearest = contact::nearest(a, b);
+  const Vec3 pa = surface_point(a, nearest.a, -nearest.normal), pb = pa - nearest.gap * nearest.normal;
+  return direction.dot(velocity(own.a, nearest.a, pa, context, start.frames) -
+                       velocity(own.b, nearest.b, pb, context, start.frames));
+}
+
 /// A contact as it is at the start of the step.
 struct Beginning {
   double gap = 0.0;       ///< [m]
@@ -236,6 +247,10 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));
   }
+  std::erase_if(found, [&](const ContactState& own) {
+    return !own.grazed.isZero(0.0) &&
+           std::abs(speed_along(context, own, start, own.grazed)) * context.h < kSlides * room.thin[own.pair];
+  });
   merge_rod_contacts(start, room.thin, found);
   iterate.contacts = std::move(found);
   room.least.clear();

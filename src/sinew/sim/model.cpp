@@ -257,7 +257,8 @@ void warn_of_flat_rods(Model& model) {
 
 /// Steps converge to a part of the largest force anywhere: beside what is heavy, what is light may not be balanced.
 void warn_of_light_objects(Model& model) {
-  constexpr double kLost = 0.01;  // of a weight: what it costs in the deflection
+  constexpr double kLost = 0.01;   // of a weight: what it costs in the deflection
+  constexpr double kHeavy = 1000;  // times as heavy; else it is the step that is short
   struct Weight {
     std::string name;
     double mass = 0.0;
@@ -279,7 +280,7 @@ void warn_of_light_objects(Model& model) {
   const double step = model.scene.analysis == Analysis::dynamic ? model.scene.time.step : INFINITY;
   const double by_weight = heavy->mass / light->mass, rounded = 1e-14 * by_weight * model.size / (step * step * g),
                left = tolerance * by_weight + rounded;
-  if (left <= kLost) return;
+  if (left <= kLost || by_weight < kHeavy) return;
   const double enough = std::pow(10.0, std::floor(std::log10(0.5 * kLost / by_weight)));
   model.warnings.push_back({.code = "light_beside_heavy",
                             .where = light->name,

@@ -38,11 +38,12 @@ struct ContactSide {
 
 /// What touches, or may touch, at the end of a step.
 struct ContactState {
-  int pair = 0;               ///< of the model's
-  std::uint64_t part = 0;     ///< of the two, by which a contact is known again in the next step
-  ContactSide a, b;           ///< of a contact in the making; those of a finished step are found again
-  bool on_second = false;     ///< a is of the pair's second object
-  Vec3 force = Vec3::Zero();  ///< [N] on a; b feels the opposite
+  int pair = 0;                ///< of the model's
+  std::uint64_t part = 0;      ///< of the two, by which a contact is known again in the next step
+  ContactSide a, b;            ///< of a contact in the making; those of a finished step are found again
+  bool on_second = false;      ///< a is of the pair's second object
+  Vec3 grazed = Vec3::Zero();  ///< of a contact in the making: normal of the plane in which both lie beside each other
+  Vec3 force = Vec3::Zero();   ///< [N] on a; b feels the opposite
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< [m] on b; from b to a
   double gap = 0.0;                                  ///< [m]
   double slip = 0.0;                                 ///< [m] in the step
