@@ -127,14 +127,22 @@ void along_distance(const Simplex& a, const Simplex& b, const Vec3& otherwise, N
   found.gap = distance;
 }
 
-/// Whether a point with these weights of its nearest point is over a triangle or, in a valley, in front of its edge.
-bool over_face(const Simplex& b, const std::array<double, 3>& weights) {
-  const auto there = [&weights](int corner) { return weights[static_cast<std::size_t>(corner % 3)] > 0.0; };
-  if (b.valley >= 0) return there(b.valley) && there(b.valley + 1);
-  return there(0) && there(1) && there(2);
-}
-
 }  // namespace
+
+bool over_face(const Simplex& b, const Vec3& p) {
+  const Vec3 n = (b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]);
+  const double area = n.squaredNorm();
+  if (!(area > 0.0)) return false;
+  std::array<double, 3> part{};  // of the point over which p is
+  for (std::size_t i = 0; i < 3; ++i) part[i] = n.dot((b.x[(i + 1) % 3] - p).cross(b.x[(i + 2) % 3] - p)) / area;
+  if (b.valley < 0) return part[0] > 0.0 && part[1] > 0.0 && part[2] > 0.0;
+  constexpr double kMargin = 1e-3;  // a third wall may stand at the edge's end
+  const auto first = static_cast<std::size_t>(b.valley), last = (first + 1) % 3;
+  if (part[(first + 2) % 3] >= 0.0) return part[first] >= -kMargin && part[last] >= -kMargin;
+  const Vec3 edge = b.x[last] - b.x[first];
+  const double along = edge.dot(p - b.x[first]) / edge.squaredNorm();
+  return along >= -kMargin && along <= 1.0 + kMargin;
+}
 
 Nearest nearest(const Simplex& a, const Simplex& b) {
   using enum Simplex::Kind;
@@ -170,7 +178,8 @@ Nearest nearest(const Simplex& a, const Simplex& b) {
         found.b = on_triangle(p, b.x[0], b.x[1], b.x[2]);
         const Vec3 n = (b.x[1] - b.x[0]).cross(b.x[2] - b.x[0]).normalized();
         const Vec3 d = p - point_of(b, found.b);
-        if (over_face(b, found.b)) {
+        const bool over = b.valley >= 0 ? over_face(b, p) : found.b[0] > 0.0 && found.b[1] > 0.0 && found.b[2] > 0.0;
+        if (over) {
           found.normal = n;
           found.gap = n.dot(d);
         } else {
@@ -233,7 +242,7 @@ Nearest nearest(const Simplex& a, const Simplex& b, const Facing& kept) {
     }
     return found;
   }
-  if (b.valley >= 0 && !over_face(b, found.b)) return found;
+  if (b.valley >= 0 && !over_face(b, a.x[0])) return found;
   found.normal = kept.normal;
   if (kept.kind == Facing::Kind::face) found.normal = face_normal(b);
   if (kept.kind == Facing::Kind::crossing) {

@@ -54,6 +54,9 @@ struct Nearest {
 /// motion of the corners is normal . (sum of a dx_a - sum of b dx_b).
 Nearest nearest(const Simplex& a, const Simplex& b);
 
+/// Whether p is over a triangle or, of one in a valley, over it or in front of its edge.
+bool over_face(const Simplex& b, const Vec3& p);
+
 /// How two simplices face each other, chosen once and kept while they move a little, so that the normal is smooth: by
 /// the face of b, across both edges, along the line between their nearest points (thick ones, which stay apart, also
 /// from a face), or along a fixed direction (thin ones beside a face or past an end, where that line turns about as

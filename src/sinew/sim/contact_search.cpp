@@ -457,12 +457,11 @@ class Search {
       if (rise <= contact::kSamePlane * start_.model.size || up.dot(x - from) >= rise) continue;
       const Vec3 side = here.x[(i + 2) % 3] - from;
       const auto [s, t] = contact::on_segment(x, from, to);
-      if (s == 0.0 || t == 0.0 || n.dot(side) <= kSteep * side.norm()) continue;
-      if ((x - s * from - t * to).norm() > kNear * longest_edge(here)) continue;
+      if (n.dot(side) <= kSteep * side.norm() || (x - s * from - t * to).norm() > kNear * longest_edge(here)) continue;
       if (a.on == faced && near_at_rest(mesh, a.nodes[0], across)) continue;
       ContactSide b = part_of(faced, surface, Simplex::Kind::triangle, across);
       b.local.valley = static_cast<int>(shared);
-      if (matters(n.dot(x - from))) add(a, b, key(part, prong, other + 1));
+      if (contact::over_face(start_.placed(b), x) && matters(n.dot(x - from))) add(a, b, key(part, prong, other + 1));
     }
   }
 
