@@ -135,7 +135,6 @@ bool over_face(const Simplex& b, const Vec3& p) {
   if (!(area > 0.0)) return false;
   std::array<double, 3> part{};  // of the point over which p is
   for (std::size_t i = 0; i < 3; ++i) part[i] = n.dot((b.x[(i + 1) % 3] - p).cross(b.x[(i + 2) % 3] - p)) / area;
-  if (b.valley < 0) return part[0] > 0.0 && part[1] > 0.0 && part[2] > 0.0;
   constexpr double kMargin = 1e-3;  // a third wall may stand at the edge's end
   const auto first = static_cast<std::size_t>(b.valley), last = (first + 1) % 3;
   if (part[(first + 2) % 3] >= 0.0) return part[first] >= -kMargin && part[last] >= -kMargin;

@@ -54,7 +54,7 @@ struct Nearest {
 /// motion of the corners is normal . (sum of a dx_a - sum of b dx_b).
 Nearest nearest(const Simplex& a, const Simplex& b);
 
-/// Whether p is over a triangle or, of one in a valley, over it or in front of its edge.
+/// Whether p is over a triangle that stands in a valley, or in front of the valley's edge.
 bool over_face(const Simplex& b, const Vec3& p);
 
 /// How two simplices face each other, chosen once and kept while they move a little, so that the normal is smooth: by

@@ -343,17 +343,16 @@ class Search {
     return !surface || steepest_edge(*surface, point.nodes[0], d) <= 1e-9;
   }
 
-  /// The normal that a contact of two parts keeps in a step.
-  static Vec3 normal_of(const Simplex& a, const Simplex& b) {
-    return contact::nearest(a, b, contact::facing(a, b)).normal;
-  }
-
-  /// Whether something with this normal can press on a point. The side of what slides over a surface stops at no point
-  /// before it that lies flat in it: from there the surface goes on towards that side, and something else is nearer.
-  bool can_press(const ContactSide& point, const Vec3& outward, const Vec3& n) const {
+  /// Whether a part can press on a point; both in axes that R turns into the world. The side of what slides over a
+  /// surface stops at no point before it that lies flat in it: from there the surface goes on towards that side, and
+  /// something else is nearer.
+  bool can_press(const ContactSide& a, const Simplex& point, const Simplex& part, const Vec3& outward,
+                 const Eigen::Matrix3d& R = Eigen::Matrix3d::Identity()) const {
     constexpr double kGoesOn = 0.5;  // the cosine of 60 degrees
-    const Surface* surface = surfaces_.of(point.on);
-    return !surface || n.dot(outward) < contact::kAgainst || steepest_edge(*surface, point.nodes[0], -n) < kGoesOn;
+    const Surface* surface = surfaces_.of(a.on);
+    if (!surface) return true;
+    const Vec3 n = R * contact::nearest(point, part, contact::facing(point, part)).normal;
+    return n.dot(outward) < contact::kAgainst || steepest_edge(*surface, a.nodes[0], -n) < kGoesOn;
   }
 
   /// Out of what a point is a corner of; zero of points of rods and of middles of what is round.
@@ -371,11 +370,11 @@ class Search {
     const contact::Shape& shape = shape_of(start_.model, hard);
     const Vec3 outward = outward_of(a), there = pose.R.transpose() * outward;
     b.local = contact::nearest_part(shape, own, there);
-    const Vec3 grazed = point.radius == 0.0 ? contact::grazed_plane(shape, own, b.local, there) : Vec3(Vec3::Zero());
     const Simplex tip = contact::point_at(own, point.radius);
     const double gap = contact::nearest(tip, b.local).gap;
-    if (gap < alarm_ && (gap <= 0.0 || can_press(a, outward, pose.R * normal_of(tip, b.local))))
-      add(a, b, part, pose.R * grazed);
+    if (gap >= alarm_ || (gap > 0.0 && !can_press(a, tip, b.local, outward, pose.R))) return;
+    add(a, b, part,
+        point.radius == 0.0 ? Vec3(pose.R * contact::grazed_plane(shape, own, b.local, there)) : Vec3(Vec3::Zero()));
   }
 
   /// A thin point meets the nearest face. A thick one may lie in a hollow and touch many, so it meets all that it is in
@@ -423,8 +422,7 @@ class Search {
                    facing = n.normalized().dot(outward);
       if (distance >= least + same || (distance >= least - same && facing >= against)) return;
       // The far side of something thin, or round the corner of what the point is above.
-      if (!outward.isZero() && (facing >= 0.0 || (found.gap > 0.0 && !can_press(a, outward, normal_of(point, face)))))
-        return;
+      if (!outward.isZero() && (facing >= 0.0 || (found.gap > 0.0 && !can_press(a, point, face, outward)))) return;
       least = std::min(least, distance);
       against = facing;
       nearest = b;
