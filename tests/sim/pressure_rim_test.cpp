@@ -1,6 +1,7 @@
 // A pressure has a potential where its surface is closed or its rim is held: what `build` says against the tangent.
 #include <random>
 
+#include "sinew/sim/first_guess.hpp"
 #include "sinew/sim/step_ends.hpp"
 #include "sinew/solid/pressure.hpp"
 #include "validation/solids.hpp"

@@ -188,8 +188,8 @@ inline int plain_sweeps(const solve::CoulombProblem& problem, double tolerance, 
 }
 
 /// What is at rest from the start on is known after a few steps.
-inline Scene brief(Scene scene) {
-  scene.time.duration = 0.08;
+inline Scene brief(Scene scene, double duration = 0.08) {
+  scene.time.duration = duration;
   return scene;
 }
 
@@ -209,6 +209,7 @@ inline std::vector<ContactProblem> contact_problems() {
     take_problems("pile of 27", brief(pile(3, 3, 3, friction)), 8, all);
   }
   take_problems("pile of 48", brief(pile(4, 4, 3, 0.5)), 4, all);
+  take_problems("wall of 48", brief(wall(8, 6, 0.5), 0.02), 2, all);
   return all;
 }
 

@@ -3,34 +3,25 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <map>
 #include <numbers>
 
-#include "sinew/contact/polyhedron.hpp"
 #include "sinew/error/input_error.hpp"
-#include "support/contacts.hpp"
+#include "support/surfaces.hpp"
 
 namespace sinew {
 namespace {
 
 using test::box_of;
+using test::box_surface;
 using test::end_of;
+using test::floor_with_block;
 using test::kGravity;
+using test::mesh_of;
 using test::mm;
+using test::named;
+using test::obstacle;
 using test::on_floor;
-
-/// A box with its middle at `middle`, two triangles a face.
-solid::Mesh box_surface(const Vec3& size, const Vec3& middle = Vec3::Zero()) {
-  const contact::Polyhedron box = contact::box(size);
-  solid::Mesh mesh;
-  mesh.nodes.resize(3, 8);
-  for (int i = 0; i < 8; ++i) mesh.nodes.col(i) = middle + box.corners[i];
-  for (const std::vector<int>& face : box.faces) {
-    mesh.faces.push_back({face[0], face[1], face[2]});
-    mesh.faces.push_back({face[0], face[2], face[3]});
-  }
-  return mesh;
-}
+using test::reader;
 
 /// A ring about z.
 solid::Mesh ring_surface(double ring, double tube, int around, int across) {
@@ -54,13 +45,6 @@ MeshReader reader(const solid::Mesh& mesh) {
 }
 
 MeshShape mesh_shape(bool hull) { return {.file = "part.stl", .scale = 1.0, .hull = hull}; }
-
-Obstacle obstacle(const auto& shape, const Vec3& at) {
-  Obstacle own;
-  own.shape = shape;
-  own.pose.translate = at;
-  return own;
-}
 
 TEST(MeshContact, ABoxOfTrianglesSlidesAsABoxDoes) {
   const double angle = 25.0 * std::numbers::pi / 180.0;
@@ -212,16 +196,6 @@ TEST(MeshContact, EdgesInOneLineAreNoTrouble) {
     EXPECT_GT(end.solids[0].x.row(2).minCoeff(), -1.5 * mm) << friction;  // table's top, and ends that hang
   }
 }
-
-std::map<std::string, solid::Mesh> named(std::initializer_list<std::pair<const std::string, solid::Mesh>> meshes) {
-  return meshes;
-}
-
-MeshReader reader(const std::map<std::string, solid::Mesh>& meshes) {
-  return [meshes](const std::filesystem::path& path) { return meshes.at(path.filename().string()); };
-}
-
-MeshShape mesh_of(const std::string& file) { return {.file = file, .scale = 1.0, .hull = false}; }
 
 /// Corners upon corners and edges upon edges, on a mesh.
 TEST(MeshContact, EqualCubesStandOnEachOther) {
@@ -385,32 +359,6 @@ TEST(MeshContact, SeamsOfALevelFloorStopNothing) {
   }
 }
 
-/// A block of 20 x 10 mm that rises out of a floor at z = 0, of one surface.
-solid::Mesh floor_with_block(double height) {
-  solid::Mesh mesh;
-  mesh.nodes.resize(3, 16);
-  const auto ring = [&mesh](int first, double x0, double x1, double y0, double y1, double z) {
-    const std::array<std::array<double, 2>, 4> corners = {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}};
-    for (int i = 0; i < 4; ++i) {
-      const auto [x, y] = corners[static_cast<std::size_t>(i)];
-      mesh.nodes.col(first + i) = Vec3(x, y, z);
-    }
-  };
-  ring(0, 0, 20 * mm, 0, 10 * mm, height);
-  ring(4, 0, 20 * mm, 0, 10 * mm, 0);
-  ring(8, -20 * mm, 120 * mm, -100 * mm, 100 * mm, 0);
-  ring(12, -20 * mm, 120 * mm, -100 * mm, 100 * mm, -20 * mm);
-  mesh.faces = {{0, 1, 2}, {0, 2, 3}, {12, 14, 13}, {12, 15, 14}};
-  for (const int upper : {0, 4, 8}) {
-    for (int i = 0; i < 4; ++i) {
-      const int next = (i + 1) % 4;
-      mesh.faces.push_back({upper + 4 + i, upper + 4 + next, upper + next});
-      mesh.faces.push_back({upper + 4 + i, upper + next, upper + i});
-    }
-  }
-  return mesh;
-}
-
 /// Beside and above a block the planes of its sides hold nothing.
 TEST(MeshContact, ValleysEndWithTheirEdges) {
   const auto meshes = named({{"high.stl", floor_with_block(10 * mm)},
@@ -418,13 +366,13 @@ TEST(MeshContact, ValleysEndWithTheirEdges) {
                              {"brick.stl", box_surface(Vec3(10 * mm, 10 * mm, 5 * mm))}});
   struct Way {
     const char* floor;
-    double g, y, z;  // [m/s^2], m
+    double gravity, y, z;  // [m/s^2], m
   };
-  for (const auto& [floor, g, y, z] :
+  for (const auto& [floor, gravity, y, z] :
        {Way{"high.stl", kGravity, 17 * mm, 0.0}, Way{"low.stl", 0.0, 5 * mm, 0.5 * mm}}) {
     SCOPED_TRACE(std::string(floor) + ", y " + std::to_string(y) + ", z " + std::to_string(z));
     Scene scene = on_floor(2e-3, 0.2, 0.0);
-    scene.gravity = Vec3(0, 0, -g);
+    scene.gravity = Vec3(0, 0, -gravity);
     scene.obstacles.clear();
     scene.obstacles.emplace_back("floor", obstacle(mesh_of(floor), Vec3::Zero()));
     RigidBody brick = box_of(1.0, 5e-4, Vec3(-7.7 * mm, y, z + 2.5 * mm));

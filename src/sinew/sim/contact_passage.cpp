@@ -7,14 +7,13 @@
 #include <optional>
 #include <utility>
 
-#include "sinew/lie/rotation.hpp"
+#include "sinew/sim/contact_way.hpp"
 
 namespace sinew {
 
 namespace {
 
 using Kind = Collider::Kind;
-using contact::Simplex;
 
 /// Part of the thinner of two by which they may overlap.
 constexpr double kDeepest = 0.25;
@@ -24,65 +23,7 @@ constexpr double kDeepestBetween = 0.1;
 /// And that parts of rigid shapes may come to overlap in a step by which these were not near each other.
 constexpr double kDeepestMade = 0.02;
 /// And by which what presses may be apart.
-constexpr double kFarthest = 0.02;
-
-/// Both ends of a step.
-struct StepMotion {
-  const Moment &start, &end;
-};
-
-contact::Pose between(const contact::Pose& from, const contact::Pose& to, double t) {
-  return {from.R * lie::exp(t * lie::log(from.R.transpose() * to.R)), from.p + t * (to.p - from.p)};
-}
-
-/// A part of an object on its way.
-Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
-  if (is_rigid(side.on))
-    return contact::moved(between(motion.start.pose(side.on), motion.end.pose(side.on), t), side.local);
-  Simplex own = motion.start.placed(side);
-  const Simplex to = motion.end.placed(side);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] += t * (to.x[i] - own.x[i]);
-  return own;
-}
-
-/// Distance of two parts less their thickness; below zero only where they overlap now, wherever they came from: past
-/// the rim of a triangle it has no inside, and the plane of a face ends with its shape.
-double separation(const StepMotion& motion, const ContactState& own, double t) {
-  const Simplex a = placed(motion, own.a, t);
-  const Model& model = motion.start.model;
-  if (a.kind == Simplex::Kind::point && is_shape(model, own.b.on)) {
-    const contact::Pose pose = between(motion.start.pose(own.b.on), motion.end.pose(own.b.on), t);
-    return gap_to_shape(shape_of(model, own.b.on), pose.R.transpose() * (a.x[0] - pose.p), a.radius);
-  }
-  const Simplex b = placed(motion, own.b, t);
-  const contact::Nearest found = contact::nearest(a, b);
-  if (b.kind == Simplex::Kind::triangle && std::min({found.b[0], found.b[1], found.b[2]}) > 1e-9) return found.gap;
-  Vec3 apart = Vec3::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(a.corners()); ++i) apart += found.a[i] * a.x[i];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(b.corners()); ++i) apart -= found.b[i] * b.x[i];
-  return apart.norm() - a.radius - b.radius;
-}
-
-/// Gap of two rigid shapes on their way, if it is less than `alarm`, or else infinite; negative where they overlap.
-double gap_of_shapes(const StepMotion& motion, const PairModel& pair, double t, double alarm) {
-  std::vector<contact::Meeting> meetings;
-  const Model& model = motion.start.model;
-  const contact::Pose a = between(motion.start.pose(pair.a), motion.end.pose(pair.a), t),
-                      b = between(motion.start.pose(pair.b), motion.end.pose(pair.b), t);
-  contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, alarm, meetings);
-  double least = INFINITY;
-  for (const contact::Meeting& own : meetings) {
-    const contact::Pose &of_a = own.swapped ? b : a, &of_b = own.swapped ? a : b;
-    const double gap = contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b)).gap;
-    if (gap < std::min(alarm, least)) least = gap;
-  }
-  return least;
-}
-
-/// How deep two rigid shapes overlap on their way; 0 where they are apart.
-double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double t) {
-  return std::max(0.0, -gap_of_shapes(motion, pair, t, 0.0));
-}
+constexpr double kFarthest = 1e-3;
 
 /// How far a point is outside a surface [m], if that is less than `far`, or else infinite; 0 inside.
 double gap_to_surface(const Surface& surface, const Vec3& point, double far) {
@@ -184,60 +125,6 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   return deepest;
 }
 
-/// The furthest that anything of an object moves; `surfaces` are those of the start.
-double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collider& own) {
-  const Model& model = motion.start.model;
-  double most = 0.0;
-  switch (own.kind) {
-    case Kind::solid:
-      most =
-          (motion.end.state.solids[own.number].x - motion.start.state.solids[own.number].x).colwise().norm().maxCoeff();
-      break;
-    case Kind::rod: {
-      Eigen::Matrix3Xd ends;
-      touching_points(motion.end, own.number, ends);
-      most = (ends - surfaces.points_of_rod(own.number)).colwise().norm().maxCoeff();
-      break;
-    }
-    case Kind::body:
-    case Kind::obstacle: {
-      const contact::Pose from = motion.start.pose(own), to = motion.end.pose(own);
-      const double turn = lie::log(from.R.transpose() * to.R).norm();
-      const double far = contact::reach(shape_of(model, own), Eigen::Matrix3d::Identity()).norm();
-      most = (to.p - from.p).norm() + (turn > 0.0 ? turn * std::min(far, model.size) : 0.0);
-      break;
-    }
-  }
-  return most;
-}
-
-constexpr int kPlaces = 64;        ///< on the way are looked at at least where parts are near
-constexpr int kMostPlaces = 4096;  ///< and at most: a motion of a thousand times the thinner of the two
-
-/// The deepest overlap [m] of two parts on their way, beyond the one they start with; 0 where they stay apart.
-double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin) {
-  const double before = std::min(0.0, separation(motion, own, 0.0));
-  // (No thin thing is stepped over, up to what a motion may cost at all.)
-  const double shortest = std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0 / kPlaces);
-  double deepest = 0.0;
-  for (double t = 0.0;;) {
-    const double gap = separation(motion, own, t);
-    deepest = std::max(deepest, before - gap);
-    if (t >= 1.0) return deepest;
-    t = std::min(1.0, t + std::max(gap / speed, shortest));
-  }
-}
-
-/// The same of two shapes.
-double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
-  const int places = std::clamp(static_cast<int>(std::ceil(4.0 * speed / thin)), 1, kMostPlaces);
-  const double before = pair.depth > 0.0 ? overlap_of_shapes(motion, pair, 0.0) : 0.0;
-  double deepest = 0.0;
-  for (int i = 1; i <= places; ++i)
-    deepest = std::max(deepest, overlap_of_shapes(motion, pair, static_cast<double>(i) / places) - before);
-  return deepest;
-}
-
 }  // namespace
 
 Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, bool evaluated,
@@ -249,6 +136,10 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   // it be refused.
   const auto may_be_mended = [](Passage::Kind kind) {
     return kind == Passage::Kind::missed || kind == Passage::Kind::left_behind;
+  };
+  const auto passing = [&room](std::size_t pair) {
+    return std::any_of(room.passing.begin(), room.passing.end(),
+                       [pair](const ContactState& own) { return own.pair == static_cast<int>(pair); });
   };
   const auto note = [&](Passage::Kind kind, std::size_t pair, double depth, double most) {
     if (!(depth > most)) return;
@@ -311,15 +202,18 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const auto cut_at = [&](const Moment& now, const Surfaces& surfaces) {
       return depth_between_triangles(now, surfaces, static_cast<int>(i)) - pair.depth;
     };
-    // (No deeper at the end than at the start and what the two have moved.)
-    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b)) &&
-        cut_at(start, room.surfaces) + speed > kDeepestBetween * thin) {
-      if (!ended) ended.emplace().fit(end);
-      const double cut = cut_at(end, *ended);
-      note_overlap(i, cut, kDeepestBetween * thin, true);
-      note(Passage::Kind::cut, i, cut, kDeepest * thin);
+    const bool shapes = are_shapes(model, pair), some_pass = passing(i);
+    if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b))) {
+      const double before = cut_at(start, room.surfaces);
+      // (No deeper at the end than at the start and what the two have moved.)
+      if (some_pass || before + speed > kDeepestBetween * thin) {
+        if (!ended) ended.emplace().fit(end);
+        const double cut = cut_at(end, *ended);
+        if (some_pass) note(Passage::Kind::missed, i, cut - before, kComesIn * model.size);
+        note_overlap(i, cut, kDeepestBetween * thin, true);
+        note(Passage::Kind::cut, i, cut, kDeepest * thin);
+      }
     }
-    const bool shapes = are_shapes(model, pair);
     const bool known = shapes && was_near(i);
     if (known) {  // parts that were not listed may have come in
       const double depth = overlap_of_shapes(motion, pair, 1.0) - pair.depth;
@@ -333,13 +227,18 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     // Two that were apart have to move by the thickness of both to get to each other's other side. (What is not met may
     // come in however little it moves.)
     const bool all_are_met =
-        std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end();
+        std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end() &&
+        !(shapes && some_pass);
+    for (const ContactState& own : room.passing) {
+      if (own.pair != static_cast<int>(i) || shapes) continue;
+      note(Passage::Kind::missed, i, deepest_of_point(motion, own, room.surfaces, speed, thin), kComesIn * model.size);
+    }
     if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {
         note(Passage::Kind::passed, i, depth, kDeepest * thin);
       } else {
-        note(Passage::Kind::missed, i, depth, 1e-6 * model.size);
+        note(Passage::Kind::missed, i, depth, kComesIn * model.size);
       }
     };
     if (shapes) {

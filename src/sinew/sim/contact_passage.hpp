@@ -2,17 +2,14 @@
 // looked for beforehand.
 //
 // Candidates are found before a step, within an alarm distance that follows from velocities. Forces, actuators and
-// frames may move things further. So the step is looked at again along the motion that it made: parts go from where
-// they were to where they are (nodes and points of rods straight, rigid bodies by the screw-free interpolation of place
-// and turn), and conservative advancement finds how deep any two come on the way,
-//
-//     t <- t + gap(t) / (how far the two move towards each other at most).
+// frames may move things further. So the step is looked at again along the motion that it made (sim/contact_way).
 //
 // A pair that meets and was no candidate makes the step be done again with a longer alarm distance. Contacts keep the
 // two parts that they were found with, and the plane of a face has no end: where one presses though the two objects are
-// apart, the step is done again without it. A pair that was a candidate and still comes deeper than a quarter of the
-// thinner of the two makes it be refused. So does a rod whose curve lies that deep in a rigid shape between the places
-// where it touches: it folds within a section; and an edge that lies that deep between the nodes of a surface.
+// apart, the step is done again without it. What was taken to fly past and does not makes it be done again with all. A
+// pair that was a candidate and still comes deeper than a quarter of the thinner of the two makes it be refused. So
+// does a rod whose curve lies that deep in a rigid shape between the places where it touches: it folds within a
+// section; and an edge that lies that deep between the nodes of a surface.
 #pragma once
 
 #include "sinew/sim/contacts.hpp"

@@ -5,8 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "sinew/sim/surface_overlap.hpp"
-
 namespace sinew {
 
 using Kind = Collider::Kind;
@@ -99,17 +97,7 @@ class Search {
       const Vec3 there = pose.R.transpose() * (point.x[0] - pose.p);
       return std::max(0.0, -gap_to_shape(shape_of(start_.model, own), there, point.radius));
     }
-    const bool in = contact::inside(*surface->mesh, surface->x, surface->faces, point.x[0]);
-    if (!in && point.radius == 0.0) return 0.0;
-    // From outside only what is within its thickness counts; from inside something is near, somewhere.
-    const double all = surface->faces.whole().sizes().norm();
-    double least = INFINITY;
-    for (double far = in ? 0.01 * all : std::max(alarm_, depth_) + point.radius; least == INFINITY; far *= 4.0) {
-      least = distance_to_triangles(*surface, point.x[0], far);
-      if (!in || far > all) break;
-      if (least > far) least = INFINITY;  // (beyond the box something may be nearer)
-    }
-    return std::max(0.0, point.radius + (in ? least : -least));
+    return sinew::depth_in(*surface, point, std::max(alarm_, depth_));
   }
 
   /// How deep edges, axes and pieces of one are in the other in the middle between the triangles that they pass through
@@ -118,22 +106,8 @@ class Search {
     const Surface* surface = surfaces_.of(faced);
     if (!surface) return 0.0;
     double deepest = 0.0;
-    for (const Edge& edge : edges_of(poking, around(faced))) {
-      std::vector<double> passes;
-      if (edge.placed.radius == 0.0) passes = {0.0, 1.0};  // (the axis of a cylinder has ends that are not round)
-      surface->faces.each_near(edge.box, [&](int number) {
-        const std::array<int, 3>& t = surface->mesh->triangles[number];
-        const auto at = pierced_at(edge.placed.x[0], edge.placed.x[1],
-                                   {surface->x.col(t[0]), surface->x.col(t[1]), surface->x.col(t[2])});
-        if (at) passes.push_back(*at);
-      });
-      std::sort(passes.begin(), passes.end());
-      for (std::size_t i = 0; i + 1 < passes.size(); ++i) {
-        const double part = 0.5 * (passes[i] + passes[i + 1]);
-        const Vec3 middle = (1.0 - part) * edge.placed.x[0] + part * edge.placed.x[1];
-        deepest = std::max(deepest, depth_in(faced, contact::point_at(middle, edge.placed.radius)));
-      }
-    }
+    for (const Edge& edge : edges_of(poking, around(faced)))
+      deepest = std::max(deepest, depth_of_line(*surface, edge.placed, std::max(alarm_, depth_)));
     return deepest;
   }
 

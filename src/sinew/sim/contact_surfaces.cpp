@@ -2,6 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/surface_overlap.hpp"
 
 namespace sinew {
 
@@ -87,6 +90,44 @@ double distance_to_triangles(const Surface& surface, const Vec3& point, double f
     least = std::min(least, (point - weights[0] * x[0] - weights[1] * x[1] - weights[2] * x[2]).norm());
   });
   return least;
+}
+
+double depth_in(const Surface& surface, const contact::Simplex& point, double near) {
+  const bool in = contact::inside(*surface.mesh, surface.x, surface.faces, point.x[0]);
+  if (!in && point.radius == 0.0) return 0.0;
+  // From inside something is near, somewhere.
+  const double all = surface.faces.whole().sizes().norm();
+  double least = INFINITY;
+  for (double far = in ? 0.01 * all : near + point.radius; least == INFINITY; far *= 4.0) {
+    least = distance_to_triangles(surface, point.x[0], far);
+    if (!in || far > all) break;
+    if (least > far) least = INFINITY;  // (beyond the box something may be nearer)
+  }
+  return std::max(0.0, point.radius + (in ? least : -least));
+}
+
+double depth_of_line(const Surface& surface, const contact::Simplex& line, double near) {
+  const Vec3 &from = line.x[0], &to = line.x[1];
+  contact::Box where;
+  for (const Vec3& end : {from, to}) {
+    where.extend(Vec3(end.array() - line.radius));
+    where.extend(Vec3(end.array() + line.radius));
+  }
+  std::vector<double> passes;
+  if (line.radius == 0.0) passes = {0.0, 1.0};  // (the axis of a cylinder has ends that are not round)
+  surface.faces.each_near(where, [&](int number) {
+    const std::array<int, 3>& t = surface.mesh->triangles[number];
+    if (const auto at = pierced_at(from, to, {surface.x.col(t[0]), surface.x.col(t[1]), surface.x.col(t[2])}))
+      passes.push_back(*at);
+  });
+  std::sort(passes.begin(), passes.end());
+  double deepest = 0.0;
+  for (std::size_t i = 0; i + 1 < passes.size(); ++i) {
+    const double part = 0.5 * (passes[i] + passes[i + 1]);
+    deepest =
+        std::max(deepest, depth_in(surface, contact::point_at((1.0 - part) * from + part * to, line.radius), near));
+  }
+  return deepest;
 }
 
 double longest_edge(const contact::Simplex& face) {

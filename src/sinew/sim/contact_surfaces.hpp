@@ -40,6 +40,14 @@ class Surfaces {
 /// Beyond `far` others may be nearer.
 double distance_to_triangles(const Surface& surface, const Vec3& point, double far);
 
+/// How deep a point is in a surface, with its thickness [m]; 0 outside. From outside only what is within `near` of it
+/// counts.
+double depth_in(const Surface& surface, const contact::Simplex& point, double near);
+
+/// How deep a segment is in a surface in the middle between the triangles that it passes through and, where it is thin,
+/// its ends [m]; 0 where it stays outside.
+double depth_of_line(const Surface& surface, const contact::Simplex& line, double near);
+
 double longest_edge(const contact::Simplex& face);
 
 /// Whether a point and a triangle of the same surface are neighbours.

@@ -3,10 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "sinew/sim/contact_merging.hpp"
 #include "sinew/sim/contact_search.hpp"
+#include "sinew/sim/contact_way.hpp"
 #include "sinew/sim/curve_contact.hpp"
+#include "sinew/sim/first_guess.hpp"
 #include "sinew/sim/places.hpp"
 
 namespace sinew {
@@ -144,6 +147,8 @@ struct Beginning {
   double gap = 0.0;       ///< [m]
   double approach = 0.0;  ///< [m/s] of the gap, points of rods at rest
   double opens = 0.0;     ///< [m/s] of the gap, with the motion of rods
+  contact::Facing facing;
+  bool closes = false;  ///< within the step, along the direction that is kept in it
 };
 Beginning beginning(const StepContext& context, const ContactState& own, const Moment& start) {
   const Simplex a = start.placed(own.a), b = start.placed(own.b);
@@ -151,12 +156,98 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
   const Feet feet = follow_curves(start, own, a, b, nearest);
   const Vec3& n = nearest.normal;
   const Vec3 pa = point_on(own.a, a, nearest.a, feet.a, -n), pb = pa - nearest.gap * n;
-  const double approach = n.dot(velocity(own.a, nearest.a, pa, context, start.frames) -
-                                velocity(own.b, nearest.b, pb, context, start.frames));
+  const Vec3 past =
+      velocity(own.a, nearest.a, pa, context, start.frames) - velocity(own.b, nearest.b, pb, context, start.frames);
+  const double approach = n.dot(past);
   const auto along = [&](const ContactSide& side, const std::array<double, 3>& weights) {
     return side.on.kind == Kind::rod ? n.dot(rod_velocity(context, side.on.number, abscissa_of(side, weights))) : 0.0;
   };
-  return {nearest.gap, approach, approach + along(own.a, nearest.a) - along(own.b, nearest.b)};
+  const contact::Facing facing = contact::facing(a, b);
+  bool closes = nearest.gap + approach * context.h < 0.0;
+  if (facing.kind == contact::Facing::Kind::face && b.kind == Simplex::Kind::triangle) {  // it goes on past its rim
+    const contact::Nearest kept = contact::nearest(a, b, facing);
+    closes = closes || kept.gap + kept.normal.dot(past) * context.h < 0.0;
+  }
+  return {nearest.gap, approach, approach + along(own.a, nearest.a) - along(own.b, nearest.b), facing, closes};
+}
+
+/// Takes out of the contacts, and of what is known of each, what the velocities of the start lead past the other object
+/// and what presses on nothing there. The iterate is the first guess of the step.
+void let_pass(const StepContext& context, const Moment& start, State& iterate, std::vector<Beginning>& began,
+              ContactRoom& room) {
+  const Model& model = context.model;
+  std::vector<ContactState>& all = iterate.contacts;
+  // Of two rigid shapes either all contacts are met or none.
+  enum class Way : char { apart, near, meets, passes };
+  std::vector<Way> shapes(model.pairs.size(), Way::apart);
+  std::vector<char> may_pass(all.size(), 0);
+  bool one_may = false;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ContactState& own = all[i];
+    const PairModel& pair = model.pairs[own.pair];
+    const bool is_free = !pair.sought && own.force.isZero() && began[i].gap > 0.0;
+    if (are_shapes(model, pair)) {
+      Way& way = shapes[own.pair];
+      if (!is_free) way = Way::meets;
+      if (way == Way::apart && began[i].closes) way = Way::near;
+      one_may = one_may || way == Way::near;
+    } else if (is_free && own.a.local.kind == Simplex::Kind::point && own.a.local.radius == 0.0 &&
+               own.a.on.kind != Kind::rod && own.b.on.kind != Kind::rod && own.a.on != own.b.on) {
+      may_pass[i] = began[i].closes;
+      one_may = one_may || may_pass[i];
+    }
+  }
+  if (!one_may) return;
+  State there = iterate;
+  move_on(context, 1.0, there);
+  const Moment end{model, there, context.displacement, room.start};
+  const StepMotion motion{start, end};
+  const double enough = kComesIn * model.size;
+  const auto speed = [&](const PairModel& pair) {
+    return farthest(motion, room.surfaces, pair.a) + farthest(motion, room.surfaces, pair.b);
+  };
+  for (std::size_t i = 0; i < model.pairs.size(); ++i) {
+    if (shapes[i] != Way::near) continue;
+    const PairModel& pair = model.pairs[i];
+    const double deepest = deepest_of_shapes(motion, pair, speed(pair), room.thin[i], enough);
+    shapes[i] = deepest > enough ? Way::meets : Way::passes;
+  }
+  // Where all points pass an edge may be in the way.
+  std::optional<Surfaces> later;
+  std::vector<Way> edges(model.pairs.size(), Way::near);
+  const auto edges_pass = [&](int number) {
+    Way& way = edges[static_cast<std::size_t>(number)];
+    if (way != Way::near) return way == Way::passes;
+    if (!later) later.emplace().fit(end);
+    const double before = depth_between_triangles(start, room.surfaces, number);
+    way = depth_between_triangles(end, *later, number) - before > enough ? Way::meets : Way::passes;
+    return way == Way::passes;
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ContactState& own = all[i];
+    const PairModel& pair = model.pairs[own.pair];
+    const auto passes = [&] {
+      return deepest_of_point(motion, own, room.surfaces, speed(pair), room.thin[own.pair], enough) <= enough &&
+             edges_pass(own.pair);
+    };
+    if (shapes[own.pair] == Way::passes || (may_pass[i] && passes())) {
+      room.passing.push_back(own);
+      continue;
+    }
+    if (kept != i) {
+      all[kept] = std::move(all[i]);
+      began[kept] = began[i];
+    }
+    ++kept;
+  }
+  all.resize(kept);
+  began.resize(kept);
+  std::erase_if(room.found, [&](const ContactKey& known) {
+    return shapes[known.first] == Way::passes ||
+           std::any_of(room.passing.begin(), room.passing.end(),
+                       [&known](const ContactState& own) { return ContactKey(own.pair, own.part) == known; });
+  });
 }
 
 /// The gap that a contact must have at the end of the step.
@@ -212,7 +303,7 @@ double alarm_distance(const StepContext& context) {
 }
 
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm,
-                   const std::vector<ContactKey>& left_behind) {
+                   const EarlierLooks& earlier_looks) {
   if (context.model.pairs.empty()) return;
   std::swap(room.start, room.now);  // (most steps start as the last one ended)
   configure_touching(context.model, rod_bases(context.model, context.start), context.start, room.start);
@@ -237,22 +328,28 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   room.left_out.clear();
   std::erase_if(found, [&](const ContactState& own) {
     const ContactKey key(own.pair, own.part);
-    const bool left_out = std::find(left_behind.begin(), left_behind.end(), key) != left_behind.end();
+    const auto& behind = earlier_looks.left_behind;
+    const bool left_out = std::find(behind.begin(), behind.end(), key) != behind.end();
     if (left_out) room.left_out.push_back(own.pair);
     return left_out;
   });
-  room.found.clear();
-  for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
   if (room.thin.empty()) {
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));
   }
+  room.found.clear();
+  for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
   std::erase_if(found, [&](const ContactState& own) {
     return !own.grazed.isZero(0.0) &&
            std::abs(speed_along(context, own, start, own.grazed)) * context.h < kSlides * room.thin[own.pair];
   });
   merge_rod_contacts(start, room.thin, found);
   iterate.contacts = std::move(found);
+  std::vector<Beginning> began;
+  began.reserve(iterate.contacts.size());
+  for (const ContactState& own : iterate.contacts) began.push_back(beginning(context, own, start));
+  room.passing.clear();
+  if (context.rate > 0.0 && !earlier_looks.met) let_pass(context, start, iterate, began, room);
   room.least.clear();
   room.gaps.clear();
   room.facings.clear();
@@ -261,10 +358,10 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   std::vector<std::vector<std::pair<double, int>>> sought(context.model.pairs.size());
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
-    const Beginning now = beginning(context, own, start);
+    const Beginning& now = began[i];
     room.gaps.push_back(now.gap);
     room.least.push_back(least_gap(context, context.model.pairs[own.pair].restitution, now));
-    room.facings.push_back(contact::facing(start.placed(own.a), start.placed(own.b)));
+    room.facings.push_back(now.facing);
     const double into = -now.opens * context.h, until = std::max(0.0, now.gap + kClear * room.thin[own.pair]);
     if (into > until) room.clear = std::min(room.clear, until / into);
     const auto number = static_cast<int>(i);

@@ -37,6 +37,9 @@ struct ContactRoom {
   std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
   std::vector<ContactKey> found;               ///< ascending
   std::vector<int> left_out;                   ///< pairs of which a contact is not met in this step
+  /// Points that fly past the other object, and of two rigid shapes that pass each other one contact: they are not met
+  /// in this step.
+  std::vector<ContactState> passing;
   std::vector<Touch> touches;
   /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
   std::vector<int> playing;
@@ -50,10 +53,21 @@ struct ContactRoom {
   double clear = 1.0;
 };
 
+/// What earlier looks at a step have found (sim/contact_passage).
+struct EarlierLooks {
+  std::vector<ContactKey> left_behind;  ///< contacts that pressed where the two were apart: they take no part
+  bool met = false;                     ///< something met after all: nothing is taken to fly past
+};
+
 /// Finds what may touch within the step, starting from where the step starts, within `alarm` [m] of each other, or what
-/// a pair's targets ask for; forces that the iterate has are kept. Those that are `left_behind` take no part.
+/// a pair's targets ask for; forces that the iterate has are kept.
+///
+/// A contact holds along a direction that is chosen at the start. Of a corner ahead of an edge that is the one from the
+/// edge to the corner, which would stop what passes above or beside it in this step: what the velocities of the start
+/// lead past the whole other object takes no part (`ContactRoom::passing`), unless `earlier` looks know better. The
+/// iterate is the first guess of the step, without those velocities.
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm,
-                   const std::vector<ContactKey>& left_behind = {});
+                   const EarlierLooks& earlier = {});
 
 /// Where the contacts of an iterate are.
 void evaluate_contacts(const StepContext& context, const State& iterate, ContactRoom& room);

@@ -6,6 +6,7 @@
 
 #include "sinew/error/digits.hpp"
 #include "sinew/sim/assessment.hpp"
+#include "sinew/sim/first_guess.hpp"
 #include "sinew/sim/rolling.hpp"
 #include "sinew/sim/step_ends.hpp"
 #include "sinew/sim/unbalanced.hpp"

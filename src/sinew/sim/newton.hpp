@@ -92,10 +92,10 @@ struct Memory {
   std::array<double, 3> residuals = {};
   Command command;
   Inverse inverse;
-  double alarm = 0.0;                   ///< [m] within which contacts are looked for
-  Passage passage;                      ///< what the second look at them has found
-  std::vector<ContactKey> left_behind;  ///< contacts that are not met in this step, as earlier looks have found
-  std::shared_ptr<const Modes> modes;   ///< of a modal analysis, once they are known
+  double alarm = 0.0;                  ///< [m] within which contacts are looked for
+  Passage passage;                     ///< what the second look at them has found
+  EarlierLooks looks;                  ///< at this step
+  std::shared_ptr<const Modes> modes;  ///< of a modal analysis, once they are known
 };
 
 /// Iterates until forces and rows are balanced and completes the state (`finish`). On failure the report names it and
@@ -109,18 +109,20 @@ NewtonRules step_rules(const Model& model, const Effort& effort);
 
 /// Repeats a step as long as its second look finds contacts that were not looked for, each time within a longer
 /// distance, or some that press where nothing is, without them; a few times at most. `make` makes it with
-/// Memory::alarm, which begins as `alarm`, and Memory::left_behind.
+/// Memory::alarm, which begins as `alarm`, and Memory::looks.
 template <class Make>
 StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
   constexpr int kLooks = 4;
   const auto look_better = [&memory] {
     const Passage& passage = memory.passage;
     if (passage.kind == Passage::Kind::missed) memory.alarm = std::max(2.0 * memory.alarm, 1.5 * passage.alarm);
-    memory.left_behind.insert(memory.left_behind.end(), passage.left_behind.begin(), passage.left_behind.end());
+    memory.looks.met = memory.looks.met || passage.kind == Passage::Kind::missed;
+    std::vector<ContactKey>& behind = memory.looks.left_behind;
+    behind.insert(behind.end(), passage.left_behind.begin(), passage.left_behind.end());
     return passage.kind == Passage::Kind::missed || passage.kind == Passage::Kind::left_behind;
   };
   memory.alarm = alarm;
-  memory.left_behind.clear();
+  memory.looks = {};
   StepReport report = make();
   for (int looks = 1; looks < kLooks && look_better(); ++looks) {
     const StepReport earlier = std::move(report);

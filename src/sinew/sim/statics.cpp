@@ -7,6 +7,7 @@
 
 #include "sinew/error/digits.hpp"
 #include "sinew/sim/contacts.hpp"
+#include "sinew/sim/first_guess.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
@@ -71,7 +72,7 @@ NewtonRules whole_steps(const Model& model) {
 void begin(Memory& memory, State& guess) {
   first_guess(memory.context, guess);
   follow_points(memory.context, guess, memory.here);
-  find_contacts(memory.context, guess, memory.here.contacts(), memory.alarm, memory.left_behind);
+  find_contacts(memory.context, guess, memory.here.contacts(), memory.alarm, memory.looks);
 }
 
 /// Takes the motion from a state.

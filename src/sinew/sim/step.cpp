@@ -6,6 +6,7 @@
 #include "sinew/sim/assessment.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/contacts.hpp"
+#include "sinew/sim/first_guess.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
@@ -69,7 +70,7 @@ double begin_step(Memory& memory, Guess guess) {
   double spent = 0.0;
   if (!memory.context.model.pairs.empty()) {  // two readings of the clock cost more than to find none
     const Clock clock(spent);
-    find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm, memory.left_behind);
+    find_contacts(memory.context, iterate.state, memory.here.contacts(), memory.alarm, memory.looks);
   }
   follow_points(memory.context, iterate.state, memory.here);
   if (guess == Guess::moved_on) {  // where velocities lead does not decide which points a rod has left
@@ -133,7 +134,7 @@ double off_converged(Memory& memory, NewtonRules rules) {
   rules.fixed = false;
   rules.inverse = nullptr;
   Iterate linearised = memory.iterate;
-  memory.left_behind.clear();
+  memory.looks = {};
   const Command command = context.command, before = command_of(model, context.start);
   const double h = context.h;
   const auto converges_in = [&](int parts) {

@@ -1,4 +1,5 @@
-// What happens before the first and after the last iteration, in time steps and statics alike.
+// What happens before the first and after the last iteration, in time steps and statics alike; the first guess is in
+// sim/first_guess.
 //
 // `room` is memory to work in.
 #pragma once
@@ -6,16 +7,6 @@
 #include "sinew/sim/linearization.hpp"
 
 namespace sinew {
-
-/// Puts held coordinates of solids where their frames are at the end of the step.
-void place_held(const StepContext& context, State& iterate);
-
-/// First guess of the end of the step: where the start is, carried along by moving frames.
-void first_guess(const StepContext& context, State& guess);
-
-/// Moves it on with the velocities of the start, for a part of the step, or for as long as no body turns by more than a
-/// radian; a solid that a moving frame carries stays.
-void move_on(const StepContext& context, double part, State& guess);
 
 /// What becomes of the rows of points that a rod's end has left, or reached again.
 enum class Rows { stay, switch_over };

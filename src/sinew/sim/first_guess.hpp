@@ -1,0 +1,18 @@
+// What a step, or an equilibrium, is first guessed to end as.
+#pragma once
+
+#include "sinew/sim/step_context.hpp"
+
+namespace sinew {
+
+/// Puts held coordinates of solids where their frames are at the end of the step.
+void place_held(const StepContext& context, State& iterate);
+
+/// First guess of the end of the step: where the start is, carried along by moving frames.
+void first_guess(const StepContext& context, State& guess);
+
+/// Moves it on with the velocities of the start, for a part of the step, or for as long as no body turns by more than a
+/// radian; a solid that a moving frame carries stays.
+void move_on(const StepContext& context, double part, State& guess);
+
+}  // namespace sinew

@@ -1,0 +1,155 @@
+// What passes near something without touching it is not stopped, turned or slowed down by it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "support/surfaces.hpp"
+
+namespace sinew {
+namespace {
+
+using test::mm;
+
+enum class Where { above, beside, past_the_corner };
+
+struct Flight {
+  double speed, step;  // [m/s], s
+};
+// A tenth of a millimetre, one and ten in a step, beside thicknesses of 5 mm.
+constexpr std::array<Flight, 3> kFlights = {{{0.1, 1e-3}, {0.5, 2e-3}, {2.0, 5e-3}}};
+
+const Vec3 kBrick(10 * mm, 10 * mm, 5 * mm);
+
+std::array<BodyShape, 4> bricks() {
+  MeshShape hull = test::mesh_of("brick.stl");
+  hull.hull = true;
+  return {BoxShape{kBrick}, test::mesh_of("brick.stl"), hull, CylinderShape{5 * mm, 5 * mm}};
+}
+
+MeshReader meshes() {
+  return test::reader(test::named({{"floor.stl", test::floor_with_block(10 * mm)},
+                                   {"step.stl", test::floor_with_block(0.2 * mm)},
+                                   {"block.stl", test::box_surface(Vec3(20 * mm, 10 * mm, 10 * mm))},
+                                   {"brick.stl", test::box_surface(kBrick)}}));
+}
+
+/// The same block of 20 x 10 x 10 mm, with its upper face at z = 10 mm, as part of a floor, as a mesh and as a box.
+std::array<Obstacle, 3> blocks() {
+  const Vec3 middle(10 * mm, 5 * mm, 5 * mm);
+  return {test::obstacle(test::mesh_of("floor.stl"), Vec3::Zero()), test::obstacle(test::mesh_of("block.stl"), middle),
+          test::obstacle(BoxShape{Vec3(20 * mm, 10 * mm, 10 * mm)}, middle)};
+}
+
+RigidBody brick(const BodyShape& shape, const Vec3& at, const Vec3& velocity) {
+  RigidBody own;
+  own.shape = shape;
+  own.mass = 1e-3;
+  own.pose.translate = at;
+  own.velocity = velocity;
+  return own;
+}
+
+Scene weightless(const Flight& flight) {
+  Scene scene;
+  scene.time = {flight.step, 40 * mm / flight.speed};
+  return scene;
+}
+
+Vec3 beginning(Where where, double clear) {
+  return {-7.7 * mm, where == Where::above ? 5 * mm : 15 * mm + clear,
+          where == Where::beside ? 2.8 * mm : 12.5 * mm + clear};
+}
+
+TEST(FlightPast, GoesStraightOn) {
+  for (const Flight& flight : kFlights) {
+    for (const Where where : {Where::above, Where::beside, Where::past_the_corner}) {
+      for (const double clear : {0.05 * mm, 0.2 * mm, 1 * mm}) {
+        for (std::size_t block = 0; block < 3; ++block) {
+          for (std::size_t shape = 0; shape < 4; ++shape) {
+            SCOPED_TRACE(std::to_string(flight.speed) + " m/s, where " + std::to_string(static_cast<int>(where)) +
+                         ", by " + std::to_string(clear) + " m, block " + std::to_string(block) + ", shape " +
+                         std::to_string(shape));
+            Scene scene = weightless(flight);
+            scene.obstacles.emplace_back("block", blocks()[block]);
+            const Vec3 at = beginning(where, clear), velocity(flight.speed, 0, 0);
+            scene.bodies.emplace_back("brick", brick(bricks()[shape], at, velocity));
+            const rigid::Motion end = test::end_of(build(scene, meshes())).bodies[0];
+            ASSERT_NEAR((end.p - at - Vec3(40 * mm, 0, 0)).norm(), 0.0, 1e-9);
+            ASSERT_NEAR((end.v - velocity).norm(), 0.0, 1e-9);
+            ASSERT_NEAR(end.w.norm(), 0.0, 1e-6);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FlightPast, OverALowStep) {
+  for (const Flight& flight : kFlights) {
+    for (std::size_t shape = 0; shape < 4; ++shape) {
+      SCOPED_TRACE(std::to_string(flight.speed) + " m/s, shape " + std::to_string(shape));
+      Scene scene = weightless(flight);
+      scene.obstacles.emplace_back("floor", test::obstacle(test::mesh_of("step.stl"), Vec3::Zero()));
+      const Vec3 at(-7.7 * mm, 5 * mm, 0.25 * mm + 2.5 * mm);
+      scene.bodies.emplace_back("brick", brick(bricks()[shape], at, Vec3(flight.speed, 0, 0)));
+      const rigid::Motion end = test::end_of(build(scene, meshes())).bodies[0];
+      EXPECT_NEAR((end.p - at - Vec3(40 * mm, 0, 0)).norm(), 0.0, 1e-9);
+    }
+  }
+}
+
+/// A block on a frame goes by what rests, and two bodies go by each other.
+TEST(FlightPast, OfWhatMovesByItselfOrIsMoved) {
+  for (const Flight& flight : kFlights) {
+    for (const Where where : {Where::above, Where::beside}) {
+      for (std::size_t shape = 0; shape < 4; ++shape) {
+        SCOPED_TRACE(std::to_string(flight.speed) + " m/s, where " + std::to_string(static_cast<int>(where)) +
+                     ", shape " + std::to_string(shape));
+        const Vec3 at = beginning(where, 0.1 * mm);
+        Scene scene = weightless(flight);
+        Frame cart;
+        cart.motion = {{0.0, scene.time.duration}, {}, {Vec3::Zero(), Vec3(-40 * mm, 0, 0)}};
+        scene.frames.emplace_back("cart", cart);
+        Obstacle block = blocks()[1];
+        block.frame = "cart";
+        scene.obstacles.emplace_back("block", block);
+        scene.bodies.emplace_back("brick", brick(bricks()[shape], at, Vec3::Zero()));
+        EXPECT_NEAR((test::end_of(build(scene, meshes())).bodies[0].p - at).norm(), 0.0, 1e-9);
+
+        Scene free = weightless(flight);
+        const Vec3 half(0.5 * flight.speed, 0, 0);
+        free.bodies.emplace_back("brick", brick(bricks()[shape], at, half));
+        free.bodies.emplace_back("other", brick(bricks()[shape], at - Vec3(-20 * mm, 0, 5.1 * mm), -half));
+        const State end = test::end_of(build(free, meshes()));
+        EXPECT_NEAR((end.bodies[0].p - at - Vec3(20 * mm, 0, 0)).norm(), 0.0, 1e-9);
+        EXPECT_NEAR((end.bodies[1].v + half).norm(), 0.0, 1e-9);
+      }
+    }
+  }
+}
+
+/// A little lower, or nearer, they hit it; sides in one plane, along which corners go, hide no edge.
+TEST(FlightPast, EndsWhereSomethingIsInTheWay) {
+  for (const Flight& flight : kFlights) {
+    for (const auto& [where, deep] :
+         {std::pair(Where::above, 0.1 * mm), std::pair(Where::above, 1.5 * mm), std::pair(Where::beside, 1.5 * mm)}) {
+      for (std::size_t block = 0; block < 3; ++block) {
+        for (std::size_t shape = 0; shape < 4; ++shape) {
+          SCOPED_TRACE(std::to_string(flight.speed) + " m/s, where " + std::to_string(static_cast<int>(where)) +
+                       ", by " + std::to_string(deep) + " m, block " + std::to_string(block) + ", shape " +
+                       std::to_string(shape));
+          Scene scene = weightless(flight);
+          scene.obstacles.emplace_back("block", blocks()[block]);
+          const Vec3 velocity(flight.speed, 0, 0);
+          scene.bodies.emplace_back("brick", brick(bricks()[shape], beginning(where, -deep), velocity));
+          EXPECT_LT(test::end_of(build(scene, meshes())).bodies[0].v.squaredNorm(), 0.9 * velocity.squaredNorm());
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sinew
