@@ -151,5 +151,57 @@ TEST(FlightPast, EndsWhereSomethingIsInTheWay) {
   }
 }
 
+/// Sides in one plane, along which corners and edges go down, are no way past.
+TEST(FlightPast, EqualBoxesFallOnEachOther) {
+  const auto cube = test::named({{"cube.stl", test::box_surface(Vec3::Constant(10 * mm))}});
+  const std::array<BodyShape, 2> shapes = {BoxShape{Vec3::Constant(10 * mm)}, test::mesh_of("cube.stl")};
+  struct Fall {
+    double step, beside;  // s, m
+    bool box_below;
+    std::size_t above;
+  };
+  for (const auto& [step, beside, box_below, above] :
+       {Fall{1e-3, 0.0, true, 0}, Fall{1e-3, 0.0, true, 1}, Fall{1e-3, 0.0, false, 0}, Fall{1e-3, 0.0, false, 1},
+        Fall{5e-3, 0.0, false, 0}, Fall{5e-3, 0.0, false, 1}, Fall{1e-3, 1e-9, false, 1}}) {
+    SCOPED_TRACE(std::to_string(step) + " s, " + std::to_string(1e9 * beside) + " nm, " + std::to_string(above));
+    Scene scene;
+    scene.time = {step, 0.01};
+    scene.gravity = Vec3(0, 0, -test::kGravity);
+    scene.obstacles.emplace_back("lower", box_below ? test::obstacle(BoxShape{Vec3::Constant(10 * mm)}, Vec3::Zero())
+                                                    : test::obstacle(test::mesh_of("cube.stl"), Vec3::Zero()));
+    scene.bodies.emplace_back("upper", brick(shapes[above], Vec3(beside, 0, 13.3 * mm), Vec3(0, 0, -1)));
+    EXPECT_NEAR(test::end_of(build(scene, test::reader(cube))).bodies[0].p.z(), 10 * mm, 1e-6);
+  }
+}
+
+/// Bars across each other, of which no corner comes near the other one, and which are through in one step.
+TEST(FlightPast, CrossedBarsMeetByTheirEdges) {
+  const auto bars = test::named({{"y.stl", test::box_surface(Vec3(3 * mm, 30 * mm, 3 * mm))},
+                                 {"z.stl", test::box_surface(Vec3(3 * mm, 3 * mm, 30 * mm))}});
+  Scene scene;
+  scene.time = {5e-3, 0.04};
+  scene.contact.friction = 0.0;
+  scene.obstacles.emplace_back("post", test::obstacle(test::mesh_of("z.stl"), Vec3::Zero()));
+  scene.bodies.emplace_back(
+      "bar", brick(test::mesh_of("y.stl"), Vec3(-5.6537 * mm, 2.453 * mm, 16.6447 * mm), Vec3(1.12954, 0, -0.789327)));
+  EXPECT_LT(test::end_of(build(scene, test::reader(bars))).bodies[0].p.x(), 0.0);
+}
+
+/// However little a step moves: what comes in by less than a millionth of the scene bounces.
+TEST(FlightPast, ShortStepsBounce) {
+  for (const double step : {1e-3, 1e-4, 2e-5}) {
+    Scene scene;
+    scene.time = {step, 0.04};
+    scene.contact.restitution = 1.0;
+    Obstacle wall;
+    wall.shape = PlaneShape{Vec3::Zero(), Vec3::UnitX()};
+    scene.obstacles.emplace_back("wall", wall);
+    for (const double x : {10.1 * mm, 1000 * mm})
+      scene.bodies.emplace_back(x < 1.0 ? "ball" : "far", brick(SphereShape{10 * mm}, Vec3(x, 0, 0), Vec3::Zero()));
+    scene.bodies[0].second.velocity = Vec3(-0.005, 0, 0);
+    EXPECT_NEAR(test::end_of(build(scene, meshes())).bodies[0].v.x(), 0.005, 1e-9) << step;
+  }
+}
+
 }  // namespace
 }  // namespace sinew

@@ -23,7 +23,7 @@ constexpr double kDeepestBetween = 0.1;
 /// And that parts of rigid shapes may come to overlap in a step by which these were not near each other.
 constexpr double kDeepestMade = 0.02;
 /// And by which what presses may be apart.
-constexpr double kFarthest = 1e-3;
+constexpr double kFarthest = 0.02;
 
 /// How far a point is outside a surface [m], if that is less than `far`, or else infinite; 0 inside.
 double gap_to_surface(const Surface& surface, const Vec3& point, double far) {
@@ -125,6 +125,19 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   return deepest;
 }
 
+/// Whether what was taken to fly past has stayed clear of the other object, if by half as much.
+bool all_stay_clear(const StepMotion& motion, const ContactRoom& room, int number, double speed) {
+  const Model& model = motion.start.model;
+  const double margin = 0.5 * kClearance * room.thin[static_cast<std::size_t>(number)];
+  const PairModel& pair = model.pairs[static_cast<std::size_t>(number)];
+  if (are_shapes(model, pair)) return shapes_stay_clear(motion, pair, margin);
+  return std::all_of(room.passing.begin(), room.passing.end(),
+                     [&](const ContactState& own) {
+                       return own.pair != number || point_stays_clear(motion, own, room.surfaces, speed, margin);
+                     }) &&
+         edges_stay_clear(motion, room.surfaces, number, speed, margin);
+}
+
 }  // namespace
 
 Passage look_again(const StepContext& context, const State& next, const ContactRoom& room, bool evaluated,
@@ -135,7 +148,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   // Of what is deeper than it may be, the deepest counts; but what doing the step again may mend goes before what makes
   // it be refused.
   const auto may_be_mended = [](Passage::Kind kind) {
-    return kind == Passage::Kind::missed || kind == Passage::Kind::left_behind;
+    return kind == Passage::Kind::missed || kind == Passage::Kind::met || kind == Passage::Kind::left_behind;
   };
   const auto passing = [&room](std::size_t pair) {
     return std::any_of(room.passing.begin(), room.passing.end(),
@@ -209,7 +222,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
       if (some_pass || before + speed > kDeepestBetween * thin) {
         if (!ended) ended.emplace().fit(end);
         const double cut = cut_at(end, *ended);
-        if (some_pass) note(Passage::Kind::missed, i, cut - before, kComesIn * model.size);
+        if (some_pass) note(Passage::Kind::met, i, cut - before, kClearance * thin);
         note_overlap(i, cut, kDeepestBetween * thin, true);
         note(Passage::Kind::cut, i, cut, kDeepest * thin);
       }
@@ -227,18 +240,15 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     // Two that were apart have to move by the thickness of both to get to each other's other side. (What is not met may
     // come in however little it moves.)
     const bool all_are_met =
-        std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end() &&
-        !(shapes && some_pass);
-    for (const ContactState& own : room.passing) {
-      if (own.pair != static_cast<int>(i) || shapes) continue;
-      note(Passage::Kind::missed, i, deepest_of_point(motion, own, room.surfaces, speed, thin), kComesIn * model.size);
-    }
+        std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end();
+    if (some_pass && !all_stay_clear(motion, room, static_cast<int>(i), speed))
+      note(Passage::Kind::met, i, kClearance * thin, 0.0);
     if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {
         note(Passage::Kind::passed, i, depth, kDeepest * thin);
       } else {
-        note(Passage::Kind::missed, i, depth, kComesIn * model.size);
+        note(Passage::Kind::missed, i, depth, 1e-6 * model.size);
       }
     };
     if (shapes) {

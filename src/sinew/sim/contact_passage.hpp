@@ -18,7 +18,7 @@ namespace sinew {
 
 /// What the second look found.
 struct Passage {
-  enum class Kind { none, missed, left_behind, passed, folded, cut };
+  enum class Kind { none, missed, met, left_behind, passed, folded, cut };
   Kind kind = Kind::none;
   int pair = -1;               ///< of the model's, the deepest
   double depth = 0.0;          ///< [m] of its overlap on the way

@@ -82,6 +82,22 @@ class Search {
     return depth_between_triangles(number);
   }
 
+  bool edges_stay_clear(const StepMotion& motion, int number, double speed, double margin) const {
+    const PairModel& own = start_.model.pairs[static_cast<std::size_t>(number)];
+    const std::vector<Edge> all = edges_of(own.a, around(own.b)), others = edges_of(own.b, around(own.a));
+    for (const Edge& one : all) {
+      const contact::Box where = grown(one.box);
+      for (const Edge& other : others) {
+        if (!where.intersects(other.box)) continue;
+        ContactState pair;
+        pair.a = one.side;
+        pair.b = other.side;
+        if (!parts_stay_clear(motion, pair, speed, margin)) return false;
+      }
+    }
+    return true;
+  }
+
   double depth_between_triangles(int number) const {
     const PairModel& own = start_.model.pairs[static_cast<std::size_t>(number)];
     if (own.a == own.b || !around(own.a).intersects(around(own.b))) return 0.0;
@@ -560,6 +576,11 @@ void search_whole(const Moment& start, double alarm, double depth, const Surface
 double depth_between_triangles(const Moment& now, const Surfaces& surfaces, int number) {
   std::vector<ContactState> none;
   return Search(now, 0.0, 0.0, surfaces, none).depth_between_triangles(number);
+}
+
+bool edges_stay_clear(const StepMotion& motion, const Surfaces& surfaces, int number, double speed, double margin) {
+  std::vector<ContactState> none;
+  return Search(motion.start, speed + margin, 0.0, surfaces, none).edges_stay_clear(motion, number, speed, margin);
 }
 
 double overlap(const Moment& now, const Surfaces& surfaces, int number) {

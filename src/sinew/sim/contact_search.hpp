@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sinew/sim/contact_surfaces.hpp"
+#include "sinew/sim/contact_way.hpp"
 
 namespace sinew {
 
@@ -19,6 +19,10 @@ void search(const Moment& start, double alarm, double depth, const Surfaces& sur
 /// touches: what goes through must not be overlooked.
 void search_whole(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
                   std::vector<ContactState>& found);
+
+/// Whether all edges of one object of a pair stay clear of those of the other on their way, but for the ends at which
+/// edges of one face meet points; `speed`: how far the two move at most [m].
+bool edges_stay_clear(const StepMotion& motion, const Surfaces& surfaces, int number, double speed, double margin);
 
 /// How deep [m] edges, axes and pieces of one object of a pair are in the other in the middle between the triangles
 /// that they pass through and, where they are thin, their ends; 0 where they stay outside. Flat parts of a mesh are met

@@ -130,6 +130,22 @@ double depth_of_line(const Surface& surface, const contact::Simplex& line, doubl
   return deepest;
 }
 
+// An end over the face, or an edge, is nearest where it does not pass through.
+double distance_to_line(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& triangle) {
+  if (pierced_at(from, to, triangle)) return 0.0;
+  double least = INFINITY;
+  for (const Vec3& end : {from, to}) {
+    const std::array<double, 3> w = contact::on_triangle(end, triangle[0], triangle[1], triangle[2]);
+    least = std::min(least, (w[0] * triangle[0] + w[1] * triangle[1] + w[2] * triangle[2] - end).norm());
+  }
+  const contact::Simplex line = contact::segment_at(from, to, Vec3::Zero(), 0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const contact::Simplex edge = contact::segment_at(triangle[i], triangle[(i + 1) % 3], Vec3::Zero(), 0.0);
+    least = std::min(least, contact::nearest(line, edge).gap);
+  }
+  return least;
+}
+
 double longest_edge(const contact::Simplex& face) {
   const auto& x = face.x;
   return std::max({(x[0] - x[1]).norm(), (x[1] - x[2]).norm(), (x[2] - x[0]).norm()});

@@ -48,6 +48,9 @@ double depth_in(const Surface& surface, const contact::Simplex& point, double ne
 /// its ends [m]; 0 where it stays outside.
 double depth_of_line(const Surface& surface, const contact::Simplex& line, double near);
 
+/// Distance [m] between a segment and a triangle; 0 where it passes through it.
+double distance_to_line(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& triangle);
+
 double longest_edge(const contact::Simplex& face);
 
 /// Whether a point and a triangle of the same surface are neighbours.

@@ -2,7 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "sinew/lie/rotation.hpp"
@@ -49,19 +52,33 @@ double separation(const StepMotion& motion, const ContactState& own, double t) {
   return apart.norm() - a.radius - b.radius;
 }
 
-double gap_of_shapes(const StepMotion& motion, const PairModel& pair, double t, double alarm) {
+namespace {
+
+/// The nearest of two rigid shapes on their way: gap [m], infinite from `alarm` on, and normal, from the second to the
+/// first.
+struct Apart {
+  double gap = INFINITY;
+  Vec3 normal = Vec3::Zero();
+};
+Apart apart_on_way(const StepMotion& motion, const PairModel& pair, double t, double alarm) {
   std::vector<contact::Meeting> meetings;
   const Model& model = motion.start.model;
   const contact::Pose a = between(motion.start.pose(pair.a), motion.end.pose(pair.a), t),
                       b = between(motion.start.pose(pair.b), motion.end.pose(pair.b), t);
   contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, alarm, meetings);
-  double least = INFINITY;
+  Apart least;
   for (const contact::Meeting& own : meetings) {
     const contact::Pose &of_a = own.swapped ? b : a, &of_b = own.swapped ? a : b;
-    const double gap = contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b)).gap;
-    if (gap < std::min(alarm, least)) least = gap;
+    const contact::Nearest found = contact::nearest(contact::moved(of_a, own.a), contact::moved(of_b, own.b));
+    if (found.gap < std::min(alarm, least.gap)) least = {found.gap, own.swapped ? Vec3(-found.normal) : found.normal};
   }
   return least;
+}
+
+}  // namespace
+
+double gap_of_shapes(const StepMotion& motion, const PairModel& pair, double t, double alarm) {
+  return apart_on_way(motion, pair, t, alarm).gap;
 }
 
 double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double t) {
@@ -94,7 +111,7 @@ double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collid
   return most;
 }
 
-double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin, double enough) {
+double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin) {
   const double before = std::min(0.0, separation(motion, own, 0.0));
   // (No thin thing is stepped over, up to what a motion may cost at all.)
   const double shortest = std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0 / kPlaces);
@@ -102,60 +119,143 @@ double deepest_of_parts(const StepMotion& motion, const ContactState& own, doubl
   for (double t = 0.0;;) {
     const double gap = separation(motion, own, t);
     deepest = std::max(deepest, before - gap);
-    if (t >= 1.0 || deepest > enough) return deepest;
+    if (t >= 1.0) return deepest;
     t = std::min(1.0, t + std::max(gap / speed, shortest));
   }
 }
 
-// Where they overlap already, a part of the thickness is a part of the way that oversteps nothing.
-double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin, double enough) {
+double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
   const double shortest = std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0);
   const double before = pair.depth > 0.0 ? overlap_of_shapes(motion, pair, 0.0) : 0.0;
   double deepest = 0.0;
   for (double t = 0.0;;) {
     const double gap = gap_of_shapes(motion, pair, t, speed);
     deepest = std::max(deepest, -gap - before);
-    if (t >= 1.0 || deepest > enough) return deepest;
+    if (t >= 1.0) return deepest;
     t = std::min(1.0, t + std::max(gap / speed, shortest));
   }
 }
 
-double deepest_of_point(const StepMotion& motion, const ContactState& own, const Surfaces& surfaces, double speed,
-                        double thin, double enough) {
+namespace {
+
+/// How far a part is beyond an end of an axis, along that [m]; negative beside it.
+double beyond_ends(const Simplex& axis, const Simplex& part) {
+  const Vec3 d = (axis.x[1] - axis.x[0]).normalized();
+  double before = INFINITY, behind = INFINITY;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.corners()); ++i) {
+    before = std::min(before, d.dot(axis.x[0] - part.x[i]));
+    behind = std::min(behind, d.dot(part.x[i] - axis.x[1]));
+  }
+  return std::max(before, behind) - part.radius;
+}
+
+/// A lower bound of the distance of two parts: `separation`, but that ends of cylinders are flat.
+double least_distance(const StepMotion& motion, const ContactState& own, double t) {
+  double least = separation(motion, own, t);
+  const auto is_flat = [&motion](const ContactSide& side) {
+    return side.local.kind == Simplex::Kind::segment && is_rigid(side.on) &&
+           std::holds_alternative<contact::Cylinder>(shape_of(motion.start.model, side.on)) && side.local.radius > 0.0;
+  };
+  if (is_flat(own.a)) least = std::max(least, beyond_ends(placed(motion, own.a, t), placed(motion, own.b, t)));
+  if (is_flat(own.b)) least = std::max(least, beyond_ends(placed(motion, own.b, t), placed(motion, own.a, t)));
+  return least;
+}
+
+}  // namespace
+
+bool parts_stay_clear(const StepMotion& motion, const ContactState& own, double speed, double margin) {
+  double t = 0.0;
+  for (int place = 0; place < kMostPlaces; ++place) {
+    const double gap = least_distance(motion, own, t);
+    if (!(gap > margin)) return false;
+    if (t >= 1.0) return true;
+    t = std::min(1.0, t + gap / speed);
+  }
+  return false;
+}
+
+// Two shapes stay apart as long as they do along the normal n between their nearest points, in which
+// - n . (motion of a - motion of b) and what points far from the middles move as these turn bring them together.
+bool shapes_stay_clear(const StepMotion& motion, const PairModel& pair, double margin) {
+  constexpr int kMost = 200;
   const Model& model = motion.start.model;
-  if (is_shape(model, own.b.on)) return deepest_of_parts(motion, own, speed, thin, enough);
+  Vec3 shift = Vec3::Zero();
+  double turning = 0.0;
+  for (const auto& [object, sign] : {std::pair(pair.a, 1.0), std::pair(pair.b, -1.0)}) {
+    const contact::Pose from = motion.start.pose(object), to = motion.end.pose(object);
+    const double turn = lie::log(from.R.transpose() * to.R).norm();
+    if (turn > 0.0) turning += turn * contact::reach(shape_of(model, object), Eigen::Matrix3d::Identity()).norm();
+    shift += sign * (to.p - from.p);
+  }
+  const double speed = shift.norm() + turning;
+  double t = 0.0;
+  for (int place = 0; place < kMost; ++place) {
+    const Apart apart = apart_on_way(motion, pair, t, speed + 2.0 * margin);
+    if (!(apart.gap > margin)) return false;
+    if (std::isinf(apart.gap)) return true;
+    const double closing = std::max(0.0, -apart.normal.dot(shift)) + turning;
+    if (closing * (1.0 - t) < apart.gap - margin) return true;
+    t += (apart.gap - 0.5 * margin) / closing;
+  }
+  return false;
+}
+
+bool point_stays_clear(const StepMotion& motion, const ContactState& own, const Surfaces& surfaces, double speed,
+                       double margin) {
+  const Model& model = motion.start.model;
+  if (is_shape(model, own.b.on)) return parts_stay_clear(motion, own, speed, margin);
   constexpr double kTurnOfPiece = 0.05;  // [rad] on which a point goes straight, as the other one sees it
-  constexpr int kMostPieces = 64;
   const Surface& surface = *surfaces.of(own.b.on);
-  double turn = 0.0;
+  const bool rigid = is_rigid(own.b.on);
+  // What turns goes on an arc beside its chord.
+  double turn = 0.0, far = 0.0;
+  const Vec3 start = placed(motion, own.a, 0.0).x[0];
   for (const Collider& object : {own.a.on, own.b.on}) {
     if (!is_rigid(object)) continue;
-    turn += lie::log(motion.start.pose(object).R.transpose() * motion.end.pose(object).R).norm();
+    const contact::Pose from = motion.start.pose(object), to = motion.end.pose(object);
+    const double angle = lie::log(from.R.transpose() * to.R).norm();
+    if (angle == 0.0) continue;
+    turn += angle;
+    far += (start - from.p).norm() + speed;
   }
-  const bool rigid = is_rigid(own.b.on);
+  const int pieces = static_cast<int>(std::ceil(turn / kTurnOfPiece)) + 1;
+  const double piece = turn / pieces, beside = 0.125 * piece * piece * far;
   const contact::Pose before = rigid ? motion.start.pose(own.b.on) : contact::Pose{};
-  Vec3 shift = Vec3::Zero();
-  if (!rigid) {
-    const Simplex there = motion.start.placed(own.b), later = motion.end.placed(own.b);
-    const contact::Nearest found = contact::nearest(motion.start.placed(own.a), there);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(there.corners()); ++i)
-      shift += found.b[i] * (later.x[i] - there.x[i]);
-  }
   const auto seen = [&](double t) -> Vec3 {
-    const Vec3 x = placed(motion, own.a, t).x[0];
-    if (!rigid) return x - t * shift;
+    Vec3 x = placed(motion, own.a, t).x[0];
+    if (!rigid) return x;
     const contact::Pose now = between(before, motion.end.pose(own.b.on), t);
     return before * (now.R.transpose() * (x - now.p));
   };
-  const int pieces = std::clamp(static_cast<int>(std::ceil(turn / kTurnOfPiece)), 1, kMostPieces);
-  double deepest = 0.0;
+  const auto& mesh = *surface.mesh;
+  const double around = margin + beside + (rigid ? 0.0 : speed);
+  bool clear = true;
   Vec3 from = seen(0.0);
-  for (int i = 1; i <= pieces && !(deepest > enough); ++i) {
+  for (int i = 1; i <= pieces && clear; ++i) {
     const Vec3 to = seen(static_cast<double>(i) / pieces);
-    deepest = std::max(deepest, depth_of_line(surface, contact::segment_at(from, to, Vec3::Zero(), 0.0), 0.0));
+    contact::Box where;
+    for (const Vec3& end : {from, to}) {
+      where.extend(Vec3(end.array() - around));
+      where.extend(Vec3(end.array() + around));
+    }
+    surface.faces.each_near(where, [&](int number) {
+      if (!clear) return;
+      std::array<Vec3, 3> x;
+      Vec3 shift = Vec3::Zero();
+      std::array<Vec3, 3> moves = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int node = mesh.triangles[static_cast<std::size_t>(number)][k];
+        x[k] = surface.x.col(node);
+        if (!rigid) moves[k] = motion.end.state.solids[own.b.on.number].x.col(node) - x[k];
+        shift += moves[k] / 3.0;
+      }
+      double differ = 0.0;  // what bends moves by the mean of a triangle's corners, but for this
+      for (const Vec3& move : moves) differ = std::max(differ, (move - shift).norm());
+      clear = distance_to_line(from, to - shift, x) > margin + beside + differ;
+    });
     from = to;
   }
-  return deepest;
+  return clear;
 }
 
 }  // namespace sinew

@@ -13,8 +13,8 @@
 
 namespace sinew {
 
-/// Part of the scene's size by which what is not met may come into something on its way.
-inline constexpr double kComesIn = 1e-6;
+/// Part of the thickness of the thinner object by which what flies past another one must stay clear of it.
+inline constexpr double kClearance = 1e-3;
 
 /// Both ends of a step, or of what one would be.
 struct StepMotion {
@@ -35,16 +35,22 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
 double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collider& own);
 
 /// The deepest overlap [m] of two parts on their way, beyond the one they start with; 0 where they stay apart. `speed`:
-/// how far the two objects move at most, `thin`: the thickness of the thinner [m]. What is deeper than `enough` ends
-/// it.
-double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin,
-                        double enough = INFINITY);
+/// how far the two objects move at most, `thin`: the thickness of the thinner [m], of which a quarter is the longest
+/// stretch that is not looked at.
+double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin);
 /// The same of two rigid shapes.
-double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin,
-                         double enough = INFINITY);
-/// How deep the point that is the first part of a contact comes into the whole of the other object [m]; 0 where it
-/// passes that. `surfaces` are those of the start; where the other one bends it moves as its part does.
-double deepest_of_point(const StepMotion& motion, const ContactState& own, const Surfaces& surfaces, double speed,
-                        double thin, double enough = INFINITY);
+double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin);
+
+// Whether things stay clear of each other on all of their way, by more than `margin` [m]; not so where it takes too
+// long to tell. Nothing is stepped over.
+
+/// The thin point that is the first part of a contact, and the whole of the other object. `surfaces` are those of the
+/// start.
+bool point_stays_clear(const StepMotion& motion, const ContactState& own, const Surfaces& surfaces, double speed,
+                       double margin);
+/// Two rigid shapes.
+bool shapes_stay_clear(const StepMotion& motion, const PairModel& pair, double margin);
+/// Two parts, as their `separation` has it, but that ends of cylinders are flat.
+bool parts_stay_clear(const StepMotion& motion, const ContactState& own, double speed, double margin);
 
 }  // namespace sinew

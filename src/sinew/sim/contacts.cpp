@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "sinew/sim/contact_merging.hpp"
 #include "sinew/sim/contact_search.hpp"
@@ -171,8 +170,9 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
   return {nearest.gap, approach, approach + along(own.a, nearest.a) - along(own.b, nearest.b), facing, closes};
 }
 
-/// Takes out of the contacts, and of what is known of each, what the velocities of the start lead past the other object
-/// and what presses on nothing there. The iterate is the first guess of the step.
+/// Takes out of the contacts, and of what is known of each, what the velocities of the start lead past the other
+/// object, clear of it on all of its way, and what presses on nothing there. The iterate is the first guess of the
+/// step.
 void let_pass(const StepContext& context, const Moment& start, State& iterate, std::vector<Beginning>& began,
               ContactRoom& room) {
   const Model& model = context.model;
@@ -199,39 +199,42 @@ void let_pass(const StepContext& context, const Moment& start, State& iterate, s
   }
   if (!one_may) return;
   State there = iterate;
-  move_on(context, 1.0, there);
+  move_by(context, context.h, there);
   const Moment end{model, there, context.displacement, room.start};
   const StepMotion motion{start, end};
-  const double enough = kComesIn * model.size;
-  const auto speed = [&](const PairModel& pair) {
-    return farthest(motion, room.surfaces, pair.a) + farthest(motion, room.surfaces, pair.b);
+  const auto turns_far = [&](const Collider& object) {
+    constexpr double kMostTurn = 1.0;  // [rad] beyond which the way is not that between both ends
+    return object.kind == Kind::body && context.h * context.start.bodies[object.number].w.norm() > kMostTurn;
   };
+  struct Known {
+    double speed = -1.0;
+    Way edges = Way::near;
+  };
+  std::vector<Known> known(model.pairs.size());
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
-    if (shapes[i] != Way::near) continue;
     const PairModel& pair = model.pairs[i];
-    const double deepest = deepest_of_shapes(motion, pair, speed(pair), room.thin[i], enough);
-    shapes[i] = deepest > enough ? Way::meets : Way::passes;
+    if (turns_far(pair.a) || turns_far(pair.b)) {
+      shapes[i] = known[i].edges = Way::meets;
+    } else if (shapes[i] == Way::near) {
+      shapes[i] = shapes_stay_clear(motion, pair, kClearance * room.thin[i]) ? Way::passes : Way::meets;
+    }
   }
-  // Where all points pass an edge may be in the way.
-  std::optional<Surfaces> later;
-  std::vector<Way> edges(model.pairs.size(), Way::near);
-  const auto edges_pass = [&](int number) {
-    Way& way = edges[static_cast<std::size_t>(number)];
-    if (way != Way::near) return way == Way::passes;
-    if (!later) later.emplace().fit(end);
-    const double before = depth_between_triangles(start, room.surfaces, number);
-    way = depth_between_triangles(end, *later, number) - before > enough ? Way::meets : Way::passes;
-    return way == Way::passes;
+  const auto passes = [&](const ContactState& own) {
+    const auto number = static_cast<std::size_t>(own.pair);
+    const PairModel& pair = model.pairs[number];
+    auto& [speed, edges] = known[number];
+    if (edges == Way::meets) return false;
+    if (speed < 0.0) speed = farthest(motion, room.surfaces, pair.a) + farthest(motion, room.surfaces, pair.b);
+    const double margin = kClearance * room.thin[number];
+    if (!point_stays_clear(motion, own, room.surfaces, speed, margin)) return false;
+    if (edges == Way::near)
+      edges = edges_stay_clear(motion, room.surfaces, own.pair, speed, margin) ? Way::passes : Way::meets;
+    return edges == Way::passes;
   };
   std::size_t kept = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ContactState& own = all[i];
-    const PairModel& pair = model.pairs[own.pair];
-    const auto passes = [&] {
-      return deepest_of_point(motion, own, room.surfaces, speed(pair), room.thin[own.pair], enough) <= enough &&
-             edges_pass(own.pair);
-    };
-    if (shapes[own.pair] == Way::passes || (may_pass[i] && passes())) {
+    if (shapes[own.pair] == Way::passes || (may_pass[i] && passes(own))) {
       room.passing.push_back(own);
       continue;
     }
@@ -243,11 +246,6 @@ void let_pass(const StepContext& context, const Moment& start, State& iterate, s
   }
   all.resize(kept);
   began.resize(kept);
-  std::erase_if(room.found, [&](const ContactKey& known) {
-    return shapes[known.first] == Way::passes ||
-           std::any_of(room.passing.begin(), room.passing.end(),
-                       [&known](const ContactState& own) { return ContactKey(own.pair, own.part) == known; });
-  });
 }
 
 /// The gap that a contact must have at the end of the step.

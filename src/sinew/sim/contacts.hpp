@@ -37,7 +37,7 @@ struct ContactRoom {
   std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
   std::vector<ContactKey> found;               ///< ascending
   std::vector<int> left_out;                   ///< pairs of which a contact is not met in this step
-  /// Points that fly past the other object, and of two rigid shapes that pass each other one contact: they are not met
+  /// Contacts of points that fly past the other object, and of rigid shapes that fly past each other: they are not met
   /// in this step.
   std::vector<ContactState> passing;
   std::vector<Touch> touches;
@@ -64,8 +64,8 @@ struct EarlierLooks {
 ///
 /// A contact holds along a direction that is chosen at the start. Of a corner ahead of an edge that is the one from the
 /// edge to the corner, which would stop what passes above or beside it in this step: what the velocities of the start
-/// lead past the whole other object takes no part (`ContactRoom::passing`), unless `earlier` looks know better. The
-/// iterate is the first guess of the step, without those velocities.
+/// lead past the whole other object, clear of it, takes no part (`ContactRoom::passing`), unless `earlier` looks know
+/// better. The iterate is the first guess of the step, without those velocities.
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm,
                    const EarlierLooks& earlier = {});
 

@@ -27,12 +27,7 @@ void first_guess(const StepContext& context, State& guess) {
   place_held(context, guess);
 }
 
-void move_on(const StepContext& context, double part, State& guess) {
-  constexpr double kMostTurn = 1.0;  // [rad]
-  double time = part * context.h;
-  for (const rigid::Motion& own : context.start.bodies) {
-    if (time * own.w.norm() > kMostTurn) time = kMostTurn / own.w.norm();
-  }
+void move_by(const StepContext& context, double time, State& guess) {
   for (std::size_t i = 0; i < guess.solids.size(); ++i) {
     const int frame = context.model.solids[i].frame;
     if (frame < 0 || !context.model.scene.frames[frame].second.motion)
@@ -41,6 +36,15 @@ void move_on(const StepContext& context, double part, State& guess) {
   place_held(context, guess);
   for (std::size_t i = 0; i < guess.rods.size(); ++i) guess.rods[i].q += time * context.start.rods[i].q_rate;
   for (std::size_t i = 0; i < guess.bodies.size(); ++i) rigid::move_on(context.start.bodies[i], time, guess.bodies[i]);
+}
+
+void move_on(const StepContext& context, double part, State& guess) {
+  constexpr double kMostTurn = 1.0;  // [rad]
+  double time = part * context.h;
+  for (const rigid::Motion& own : context.start.bodies) {
+    if (time * own.w.norm() > kMostTurn) time = kMostTurn / own.w.norm();
+  }
+  move_by(context, time, guess);
 }
 
 }  // namespace sinew

@@ -11,8 +11,11 @@ void place_held(const StepContext& context, State& iterate);
 /// First guess of the end of the step: where the start is, carried along by moving frames.
 void first_guess(const StepContext& context, State& guess);
 
-/// Moves it on with the velocities of the start, for a part of the step, or for as long as no body turns by more than a
-/// radian; a solid that a moving frame carries stays.
+/// Moves it on with the velocities of the start for a time [s]; a solid that a moving frame carries stays.
+void move_by(const StepContext& context, double time, State& guess);
+
+/// The same for a part of the step, or for as long as no body turns by more than a
+/// radian.
 void move_on(const StepContext& context, double part, State& guess);
 
 }  // namespace sinew

@@ -108,7 +108,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
 NewtonRules step_rules(const Model& model, const Effort& effort);
 
 /// Repeats a step as long as its second look finds contacts that were not looked for, each time within a longer
-/// distance, or some that press where nothing is, without them; a few times at most. `make` makes it with
+/// distance, or something that was taken to fly past and has not, or some that press where nothing is, without them; a
+/// few times at most. `make` makes it with
 /// Memory::alarm, which begins as `alarm`, and Memory::looks.
 template <class Make>
 StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
@@ -116,10 +117,11 @@ StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
   const auto look_better = [&memory] {
     const Passage& passage = memory.passage;
     if (passage.kind == Passage::Kind::missed) memory.alarm = std::max(2.0 * memory.alarm, 1.5 * passage.alarm);
-    memory.looks.met = memory.looks.met || passage.kind == Passage::Kind::missed;
+    memory.looks.met = memory.looks.met || passage.kind == Passage::Kind::met || passage.kind == Passage::Kind::missed;
     std::vector<ContactKey>& behind = memory.looks.left_behind;
     behind.insert(behind.end(), passage.left_behind.begin(), passage.left_behind.end());
-    return passage.kind == Passage::Kind::missed || passage.kind == Passage::Kind::left_behind;
+    return passage.kind == Passage::Kind::missed || passage.kind == Passage::Kind::met ||
+           passage.kind == Passage::Kind::left_behind;
   };
   memory.alarm = alarm;
   memory.looks = {};
