@@ -100,6 +100,24 @@ TEST(FlightPast, OverALowStep) {
   }
 }
 
+/// Its corners rest on the same surface that the block rises from.
+TEST(FlightPast, OfABrickThatSlidesBesideABlock) {
+  for (std::size_t shape = 0; shape < 2; ++shape) {
+    for (const double clear : {0.05 * mm, 0.2 * mm}) {
+      SCOPED_TRACE(std::to_string(clear) + " m, shape " + std::to_string(shape));
+      Scene scene = weightless(kFlights[1]);
+      scene.gravity = Vec3(0, 0, -test::kGravity);
+      scene.contact.friction = 0.0;
+      scene.obstacles.emplace_back("floor", blocks()[0]);
+      const Vec3 at(-7.7 * mm, 15 * mm + clear, 2.5 * mm);
+      scene.bodies.emplace_back("brick", brick(bricks()[shape], at, Vec3(0.5, 0, 0)));
+      const rigid::Motion end = test::end_of(build(scene, meshes())).bodies[0];
+      EXPECT_NEAR((end.p - at - Vec3(40 * mm, 0, 0)).norm(), 0.0, 1e-6);
+      EXPECT_NEAR((end.v - Vec3(0.5, 0, 0)).norm(), 0.0, 1e-5);
+    }
+  }
+}
+
 /// A block on a frame goes by what rests, and two bodies go by each other.
 TEST(FlightPast, OfWhatMovesByItselfOrIsMoved) {
   for (const Flight& flight : kFlights) {
