@@ -20,8 +20,8 @@ void search(const Moment& start, double alarm, double depth, const Surfaces& sur
 void search_whole(const Moment& start, double alarm, double depth, const Surfaces& surfaces, int number,
                   std::vector<ContactState>& found);
 
-/// Whether all edges of one object of a pair stay clear of those of the other on their way, but for the ends at which
-/// edges of one face meet points; `speed`: how far the two move at most [m].
+/// Whether the edges by which one object of a pair presses into others stay clear of those of the other one on their
+/// way, by more than `margin` [m]; `speed`: how far the two move at most [m].
 bool edges_stay_clear(const StepMotion& motion, const Surfaces& surfaces, int number, double speed, double margin);
 
 /// How deep [m] edges, axes and pieces of one object of a pair are in the other in the middle between the triangles

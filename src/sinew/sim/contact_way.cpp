@@ -24,6 +24,11 @@ contact::Pose between(const contact::Pose& from, const contact::Pose& to, double
   return {from.R * lie::exp(t * lie::log(from.R.transpose() * to.R)), from.p + t * (to.p - from.p)};
 }
 
+/// By how much a body or an obstacle turns on its way [rad].
+double turn_of(const StepMotion& motion, const Collider& rigid) {
+  return lie::log(motion.start.pose(rigid).R.transpose() * motion.end.pose(rigid).R).norm();
+}
+
 /// A part of an object on its way.
 Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
   if (is_rigid(side.on))
@@ -102,7 +107,7 @@ double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collid
     case Kind::body:
     case Kind::obstacle: {
       const contact::Pose from = motion.start.pose(own), to = motion.end.pose(own);
-      const double turn = lie::log(from.R.transpose() * to.R).norm();
+      const double turn = turn_of(motion, own);
       const double far = contact::reach(shape_of(model, own), Eigen::Matrix3d::Identity()).norm();
       most = (to.p - from.p).norm() + (turn > 0.0 ? turn * std::min(far, model.size) : 0.0);
       break;
@@ -183,7 +188,7 @@ bool shapes_stay_clear(const StepMotion& motion, const PairModel& pair, double m
   double turning = 0.0;
   for (const auto& [object, sign] : {std::pair(pair.a, 1.0), std::pair(pair.b, -1.0)}) {
     const contact::Pose from = motion.start.pose(object), to = motion.end.pose(object);
-    const double turn = lie::log(from.R.transpose() * to.R).norm();
+    const double turn = turn_of(motion, object);
     if (turn > 0.0) turning += turn * contact::reach(shape_of(model, object), Eigen::Matrix3d::Identity()).norm();
     shift += sign * (to.p - from.p);
   }
@@ -212,11 +217,10 @@ bool point_stays_clear(const StepMotion& motion, const ContactState& own, const 
   const Vec3 start = placed(motion, own.a, 0.0).x[0];
   for (const Collider& object : {own.a.on, own.b.on}) {
     if (!is_rigid(object)) continue;
-    const contact::Pose from = motion.start.pose(object), to = motion.end.pose(object);
-    const double angle = lie::log(from.R.transpose() * to.R).norm();
+    const double angle = turn_of(motion, object);
     if (angle == 0.0) continue;
     turn += angle;
-    far += (start - from.p).norm() + speed;
+    far += (start - motion.start.pose(object).p).norm() + speed;
   }
   const int pieces = static_cast<int>(std::ceil(turn / kTurnOfPiece)) + 1;
   const double piece = turn / pieces, beside = 0.125 * piece * piece * far;

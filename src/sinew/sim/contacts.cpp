@@ -331,12 +331,12 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     if (left_out) room.left_out.push_back(own.pair);
     return left_out;
   });
+  room.found.clear();
+  for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
   if (room.thin.empty()) {
     for (const PairModel& pair : context.model.pairs)
       room.thin.push_back(std::min(thickness_of(context.model, pair.a), thickness_of(context.model, pair.b)));
   }
-  room.found.clear();
-  for (const ContactState& own : found) room.found.emplace_back(own.pair, own.part);
   std::erase_if(found, [&](const ContactState& own) {
     return !own.grazed.isZero(0.0) &&
            std::abs(speed_along(context, own, start, own.grazed)) * context.h < kSlides * room.thin[own.pair];
