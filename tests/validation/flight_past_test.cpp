@@ -86,6 +86,33 @@ TEST(FlightPast, GoesStraightOn) {
   }
 }
 
+/// Across, past an upright edge of the block that the horizontal ones of the brick cross; and a brick that is met does
+/// not bring back what is in the way of another one.
+TEST(FlightPast, PastAnEdgeThatItsEdgesCross) {
+  const double h = 2e-3;
+  for (const Vec3& velocity : {Vec3(2, 0.05, 0), Vec3(2, 1, 0), Vec3(0.5, 0.5, 0.1), Vec3(2, 0.3, -0.5)}) {
+    for (const double clear : {0.01 * mm, 0.05 * mm, 0.3 * mm}) {
+      for (std::size_t block = 0; block < 3; ++block) {
+        for (std::size_t shape = 0; shape < 3; ++shape) {
+          SCOPED_TRACE(std::to_string(velocity.x()) + ", " + std::to_string(velocity.y()) + " m/s, by " +
+                       std::to_string(clear) + " m, block " + std::to_string(block) + ", shape " +
+                       std::to_string(shape));
+          Scene scene;
+          scene.time = {h, 5 * h};
+          scene.obstacles.emplace_back("block", blocks()[block]);
+          const double x = -5.8 * mm, until = (-5 * mm - x) / velocity.x();  // [s] until it is at the edge
+          const Vec3 at(x, 15 * mm + clear - until * velocity.y(), 10 * mm - until * velocity.z());
+          scene.bodies.emplace_back("brick", brick(bricks()[shape], at, velocity));
+          scene.bodies.emplace_back("other", brick(bricks()[shape], Vec3(-5.8 * mm, 5 * mm, 5 * mm), Vec3(2, 0, 0)));
+          const State end = test::end_of(build(scene, meshes()));
+          EXPECT_NEAR((end.bodies[0].v - velocity).norm(), 0.0, 1e-9);
+          EXPECT_LT(end.bodies[1].v.x(), 1.0);
+        }
+      }
+    }
+  }
+}
+
 TEST(FlightPast, OverALowStep) {
   for (const Flight& flight : kFlights) {
     for (std::size_t shape = 0; shape < 4; ++shape) {

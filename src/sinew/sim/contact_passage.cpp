@@ -125,15 +125,26 @@ double deepest_between(const Moment& now, const PairModel& pair) {
   return deepest;
 }
 
+/// What of a pair was taken to fly past (`ContactRoom::passing` goes by pairs).
+auto passing(const ContactRoom& room, int number) {
+  struct ByPair {
+    bool operator()(const ContactState& own, int pair) const { return own.pair < pair; }
+    bool operator()(int pair, const ContactState& own) const { return pair < own.pair; }
+  };
+  return std::equal_range(room.passing.begin(), room.passing.end(), number, ByPair());
+}
+
 /// Whether what was taken to fly past has stayed clear of the other object, if by half as much.
 bool all_stay_clear(const StepMotion& motion, const ContactRoom& room, int number, double speed) {
   const Model& model = motion.start.model;
   const double margin = 0.5 * kClearance * room.thin[static_cast<std::size_t>(number)];
   const PairModel& pair = model.pairs[static_cast<std::size_t>(number)];
   if (are_shapes(model, pair)) return shapes_stay_clear(motion, pair, margin);
-  return std::all_of(room.passing.begin(), room.passing.end(),
+  const auto [first, last] = passing(room, number);
+  return std::all_of(first, last,
                      [&](const ContactState& own) {
-                       return own.pair != number || point_stays_clear(motion, own, room.surfaces, speed, margin);
+                       return own.a.local.kind != contact::Simplex::Kind::point ||
+                              point_stays_clear(motion, own, room.surfaces, speed, margin);
                      }) &&
          edges_stay_clear(motion, room.surfaces, number, speed, margin);
 }
@@ -149,10 +160,6 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   // it be refused.
   const auto may_be_mended = [](Passage::Kind kind) {
     return kind == Passage::Kind::missed || kind == Passage::Kind::met || kind == Passage::Kind::left_behind;
-  };
-  const auto passing = [&room](std::size_t pair) {
-    return std::any_of(room.passing.begin(), room.passing.end(),
-                       [pair](const ContactState& own) { return own.pair == static_cast<int>(pair); });
   };
   const auto note = [&](Passage::Kind kind, std::size_t pair, double depth, double most) {
     if (!(depth > most)) return;
@@ -215,14 +222,20 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const auto cut_at = [&](const Moment& now, const Surfaces& surfaces) {
       return depth_between_triangles(now, surfaces, static_cast<int>(i)) - pair.depth;
     };
-    const bool shapes = are_shapes(model, pair), some_pass = passing(i);
+    const auto number = static_cast<int>(i);
+    const auto [first_passing, last_passing] = passing(room, number);
+    const bool shapes = are_shapes(model, pair), some_pass = first_passing != last_passing;
+    const auto note_met = [&](double depth, double most) {
+      if (depth > most) found.met.push_back(number);
+      note(Passage::Kind::met, i, depth, most);
+    };
     if (!rods_meet && (mesh_of(model, pair.a) || mesh_of(model, pair.b))) {
       const double before = cut_at(start, room.surfaces);
       // (No deeper at the end than at the start and what the two have moved.)
       if (some_pass || before + speed > kDeepestBetween * thin) {
         if (!ended) ended.emplace().fit(end);
         const double cut = cut_at(end, *ended);
-        if (some_pass) note(Passage::Kind::met, i, cut - before, kClearance * thin);
+        if (some_pass) note_met(cut - before, kClearance * thin);
         note_overlap(i, cut, kDeepestBetween * thin, true);
         note(Passage::Kind::cut, i, cut, kDeepest * thin);
       }
@@ -241,8 +254,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     // come in however little it moves.)
     const bool all_are_met =
         std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end();
-    if (some_pass && !all_stay_clear(motion, room, static_cast<int>(i), speed))
-      note(Passage::Kind::met, i, kClearance * thin, 0.0);
+    if (some_pass && !all_stay_clear(motion, room, static_cast<int>(i), speed)) note_met(kClearance * thin, 0.0);
     if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {

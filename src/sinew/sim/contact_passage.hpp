@@ -26,6 +26,7 @@ struct Passage {
   int overlapping = -1;        ///< of the model's pairs, the one with that
   bool between_nodes = false;  ///< there: what overlaps is an edge between the nodes of a surface
   double alarm = 0.0;          ///< [m] within which contacts are to be looked for to find all that may meet
+  std::vector<int> met;        ///< pairs of which something was taken to fly past and has not stayed clear
   std::vector<ContactKey> left_behind;  ///< contacts that press where the two are apart
 };
 

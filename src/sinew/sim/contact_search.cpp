@@ -84,18 +84,15 @@ class Search {
 
   bool edges_stay_clear(const StepMotion& motion, int number, double speed, double margin) const {
     const PairModel& own = start_.model.pairs[static_cast<std::size_t>(number)];
-    const std::vector<Edge> all = edges_of(own.a, around(own.b)), others = edges_of(own.b, around(own.a));
-    for (const Edge& one : all) {
-      const contact::Box where = grown(one.box);
-      for (const Edge& other : others) {
-        if (!where.intersects(other.box)) continue;
-        ContactState pair;
-        pair.a = one.side;
-        pair.b = other.side;
-        if (!parts_stay_clear(motion, pair, speed, margin)) return false;
-      }
-    }
-    return true;
+    bool clear = true;
+    each_near(edges_of(own.a, around(own.b)), edges_of(own.b, around(own.a)), [&](const Edge& one, const Edge& other) {
+      if (!clear) return;
+      ContactState both;
+      both.a = one.side;
+      both.b = other.side;
+      clear = parts_stay_clear(motion, both, speed, margin);
+    });
+    return clear;
   }
 
   double depth_between_triangles(int number) const {
@@ -478,7 +475,21 @@ class Search {
   void each_crossing(const Collider& first, const Collider& second, const Visit& visit) {
     const std::vector<Edge> all = edges_of(first, around(second));
     if (all.empty()) return;
-    std::vector<Edge> others = first == second ? all : edges_of(second, around(first));
+    each_near(all, first == second ? all : edges_of(second, around(first)), [&](const Edge& one, const Edge& other) {
+      if (first == second && (one.number >= other.number || neighbours(one.side, other.side))) return;
+      const bool turned = other.placed.normal.isZero() && !one.placed.normal.isZero();
+      const Edge &a = turned ? other : one, &b = turned ? one : other;
+      if (side_by_side(a, b)) return;
+      const contact::Nearest found = contact::nearest(a.placed, b.placed);
+      if (!(found.gap < alarm_) || !within(found, a.side, b.side)) return;
+      if (found.normal.dot(b.placed.normal) < 0.0 || found.normal.dot(a.placed.normal) > 0.0) return;
+      visit(a, b, found, key(Part::edges, one.number, other.number));
+    });
+  }
+
+  /// Visits the edges of two lists whose boxes come within the alarm distance of each other.
+  template <class Visit>
+  void each_near(const std::vector<Edge>& all, std::vector<Edge> others, const Visit& visit) const {
     std::sort(others.begin(), others.end(),
               [](const Edge& a, const Edge& b) { return a.box.min().x() < b.box.min().x(); });
     double widest = 0.0;
@@ -489,15 +500,7 @@ class Search {
         return edge.box.min().x() < where.min().x() - widest;
       });
       for (; other != others.end() && other->box.min().x() <= where.max().x(); ++other) {
-        if (!where.intersects(other->box)) continue;
-        if (first == second && (one.number >= other->number || neighbours(one.side, other->side))) continue;
-        const bool turned = other->placed.normal.isZero() && !one.placed.normal.isZero();
-        const Edge &a = turned ? *other : one, &b = turned ? one : *other;
-        if (side_by_side(a, b)) continue;
-        const contact::Nearest found = contact::nearest(a.placed, b.placed);
-        if (!(found.gap < alarm_) || !within(found, a.side, b.side)) continue;
-        if (found.normal.dot(b.placed.normal) < 0.0 || found.normal.dot(a.placed.normal) > 0.0) continue;
-        visit(a, b, found, key(Part::edges, one.number, other->number));
+        if (where.intersects(other->box)) visit(one, *other);
       }
     }
   }

@@ -90,8 +90,20 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
   return std::max(0.0, -gap_of_shapes(motion, pair, t, 0.0));
 }
 
-double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collider& own) {
+namespace {
+
+/// The furthest that anything of a body or an obstacle moves as this turns [m]; of a half-space, as far as the model is
+/// large.
+double farthest_by_turning(const StepMotion& motion, const Collider& rigid) {
   const Model& model = motion.start.model;
+  const double turn = turn_of(motion, rigid);
+  if (turn == 0.0) return 0.0;
+  return turn * std::min(contact::reach(shape_of(model, rigid), Eigen::Matrix3d::Identity()).norm(), model.size);
+}
+
+}  // namespace
+
+double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collider& own) {
   double most = 0.0;
   switch (own.kind) {
     case Kind::solid:
@@ -105,13 +117,9 @@ double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collid
       break;
     }
     case Kind::body:
-    case Kind::obstacle: {
-      const contact::Pose from = motion.start.pose(own), to = motion.end.pose(own);
-      const double turn = turn_of(motion, own);
-      const double far = contact::reach(shape_of(model, own), Eigen::Matrix3d::Identity()).norm();
-      most = (to.p - from.p).norm() + (turn > 0.0 ? turn * std::min(far, model.size) : 0.0);
+    case Kind::obstacle:
+      most = (motion.end.pose(own).p - motion.start.pose(own).p).norm() + farthest_by_turning(motion, own);
       break;
-    }
   }
   return most;
 }
@@ -183,14 +191,11 @@ bool parts_stay_clear(const StepMotion& motion, const ContactState& own, double 
 // - n . (motion of a - motion of b) and what points far from the middles move as these turn bring them together.
 bool shapes_stay_clear(const StepMotion& motion, const PairModel& pair, double margin) {
   constexpr int kMost = 200;
-  const Model& model = motion.start.model;
   Vec3 shift = Vec3::Zero();
   double turning = 0.0;
   for (const auto& [object, sign] : {std::pair(pair.a, 1.0), std::pair(pair.b, -1.0)}) {
-    const contact::Pose from = motion.start.pose(object), to = motion.end.pose(object);
-    const double turn = turn_of(motion, object);
-    if (turn > 0.0) turning += turn * contact::reach(shape_of(model, object), Eigen::Matrix3d::Identity()).norm();
-    shift += sign * (to.p - from.p);
+    turning += farthest_by_turning(motion, object);
+    shift += sign * (motion.end.pose(object).p - motion.start.pose(object).p);
   }
   const double speed = shift.norm() + turning;
   double t = 0.0;
@@ -212,18 +217,18 @@ bool point_stays_clear(const StepMotion& motion, const ContactState& own, const 
   constexpr double kTurnOfPiece = 0.05;  // [rad] on which a point goes straight, as the other one sees it
   const Surface& surface = *surfaces.of(own.b.on);
   const bool rigid = is_rigid(own.b.on);
-  // What turns goes on an arc beside its chord.
-  double turn = 0.0, far = 0.0;
+  // A point r from the middle of what turns by w in the step goes on an arc beside its chord, and what goes straight at
+  // v does so as seen from there: by (w^2 r + 2 w v) / (8 n^2) on each of n pieces of the way at most.
+  double turn = 0.0, bends = 0.0;
   const Vec3 start = placed(motion, own.a, 0.0).x[0];
   for (const Collider& object : {own.a.on, own.b.on}) {
     if (!is_rigid(object)) continue;
     const double angle = turn_of(motion, object);
-    if (angle == 0.0) continue;
     turn += angle;
-    far += (start - motion.start.pose(object).p).norm() + speed;
+    bends += angle * angle * ((start - motion.start.pose(object).p).norm() + speed) + 2.0 * angle * speed;
   }
   const int pieces = static_cast<int>(std::ceil(turn / kTurnOfPiece)) + 1;
-  const double piece = turn / pieces, beside = 0.125 * piece * piece * far;
+  const double beside = 0.125 * bends / (pieces * pieces);
   const contact::Pose before = rigid ? motion.start.pose(own.b.on) : contact::Pose{};
   const auto seen = [&](double t) -> Vec3 {
     Vec3 x = placed(motion, own.a, t).x[0];
@@ -236,7 +241,8 @@ bool point_stays_clear(const StepMotion& motion, const ContactState& own, const 
   bool clear = true;
   Vec3 from = seen(0.0);
   for (int i = 1; i <= pieces && clear; ++i) {
-    const Vec3 to = seen(static_cast<double>(i) / pieces);
+    const double before_piece = (i - 1.0) / pieces, after_piece = static_cast<double>(i) / pieces;
+    const Vec3 to = seen(after_piece);
     contact::Box where;
     for (const Vec3& end : {from, to}) {
       where.extend(Vec3(end.array() - around));
@@ -255,7 +261,7 @@ bool point_stays_clear(const StepMotion& motion, const ContactState& own, const 
       }
       double differ = 0.0;  // what bends moves by the mean of a triangle's corners, but for this
       for (const Vec3& move : moves) differ = std::max(differ, (move - shift).norm());
-      clear = distance_to_line(from, to - shift, x) > margin + beside + differ;
+      clear = distance_to_line(from - before_piece * shift, to - after_piece * shift, x) > margin + beside + differ;
     });
     from = to;
   }

@@ -36,13 +36,13 @@ double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collid
 
 /// The deepest overlap [m] of two parts on their way, beyond the one they start with; 0 where they stay apart. `speed`:
 /// how far the two objects move at most, `thin`: the thickness of the thinner [m], of which a quarter is the longest
-/// stretch that is not looked at.
+/// stretch that is not looked at, unless they move by more than a thousand of them.
 double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin);
 /// The same of two rigid shapes.
 double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin);
 
-// Whether things stay clear of each other on all of their way, by more than `margin` [m]; not so where it takes too
-// long to tell. Nothing is stepped over.
+// Whether things stay clear of each other on all of their way: by more than `margin` [m] wherever that is looked at, by
+// half of it in between; not so where it takes too long to tell. Nothing is stepped over.
 
 /// The thin point that is the first part of a contact, and the whole of the other object. `surfaces` are those of the
 /// start.

@@ -170,11 +170,19 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
   return {nearest.gap, approach, approach + along(own.a, nearest.a) - along(own.b, nearest.b), facing, closes};
 }
 
+/// Whether a contact is one of a corner or of two edges, of two different solids or rigid bodies.
+bool of_corner_or_edges(const ContactState& own) {
+  if (own.a.on.kind == Kind::rod || own.b.on.kind == Kind::rod || own.a.on == own.b.on) return false;
+  const Simplex &a = own.a.local, &b = own.b.local;
+  return (a.kind == Simplex::Kind::point && a.radius == 0.0) ||
+         (a.kind == Simplex::Kind::segment && b.kind == Simplex::Kind::segment);
+}
+
 /// Takes out of the contacts, and of what is known of each, what the velocities of the start lead past the other
-/// object, clear of it on all of its way, and what presses on nothing there. The iterate is the first guess of the
-/// step.
-void let_pass(const StepContext& context, const Moment& start, State& iterate, std::vector<Beginning>& began,
-              ContactRoom& room) {
+/// object, clear of it on all of its way, and what presses on nothing there; but not of pairs that have `met`. The
+/// iterate is the first guess of the step.
+void let_pass(const StepContext& context, const Moment& start, const std::vector<int>& met, State& iterate,
+              std::vector<Beginning>& began, ContactRoom& room) {
   const Model& model = context.model;
   std::vector<ContactState>& all = iterate.contacts;
   // Of two rigid shapes either all contacts are met or none.
@@ -185,14 +193,14 @@ void let_pass(const StepContext& context, const Moment& start, State& iterate, s
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ContactState& own = all[i];
     const PairModel& pair = model.pairs[own.pair];
+    if (std::find(met.begin(), met.end(), own.pair) != met.end()) continue;
     const bool is_free = !pair.sought && own.force.isZero() && began[i].gap > 0.0;
     if (are_shapes(model, pair)) {
       Way& way = shapes[own.pair];
       if (!is_free) way = Way::meets;
       if (way == Way::apart && began[i].closes) way = Way::near;
       one_may = one_may || way == Way::near;
-    } else if (is_free && own.a.local.kind == Simplex::Kind::point && own.a.local.radius == 0.0 &&
-               own.a.on.kind != Kind::rod && own.b.on.kind != Kind::rod && own.a.on != own.b.on) {
+    } else if (is_free && of_corner_or_edges(own)) {
       may_pass[i] = began[i].closes;
       one_may = one_may || may_pass[i];
     }
@@ -203,7 +211,6 @@ void let_pass(const StepContext& context, const Moment& start, State& iterate, s
   const Moment end{model, there, context.displacement, room.start};
   const StepMotion motion{start, end};
   const auto turns_far = [&](const Collider& object) {
-    constexpr double kMostTurn = 1.0;  // [rad] beyond which the way is not that between both ends
     return object.kind == Kind::body && context.h * context.start.bodies[object.number].w.norm() > kMostTurn;
   };
   struct Known {
@@ -226,7 +233,8 @@ void let_pass(const StepContext& context, const Moment& start, State& iterate, s
     if (edges == Way::meets) return false;
     if (speed < 0.0) speed = farthest(motion, room.surfaces, pair.a) + farthest(motion, room.surfaces, pair.b);
     const double margin = kClearance * room.thin[number];
-    if (!point_stays_clear(motion, own, room.surfaces, speed, margin)) return false;
+    if (own.a.local.kind == Simplex::Kind::point && !point_stays_clear(motion, own, room.surfaces, speed, margin))
+      return false;
     if (edges == Way::near)
       edges = edges_stay_clear(motion, room.surfaces, own.pair, speed, margin) ? Way::passes : Way::meets;
     return edges == Way::passes;
@@ -347,7 +355,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   began.reserve(iterate.contacts.size());
   for (const ContactState& own : iterate.contacts) began.push_back(beginning(context, own, start));
   room.passing.clear();
-  if (context.rate > 0.0 && !earlier_looks.met) let_pass(context, start, iterate, began, room);
+  if (context.rate > 0.0) let_pass(context, start, earlier_looks.met, iterate, began, room);
   room.least.clear();
   room.gaps.clear();
   room.facings.clear();

@@ -56,16 +56,17 @@ struct ContactRoom {
 /// What earlier looks at a step have found (sim/contact_passage).
 struct EarlierLooks {
   std::vector<ContactKey> left_behind;  ///< contacts that pressed where the two were apart: they take no part
-  bool met = false;                     ///< something met after all: nothing is taken to fly past
+  std::vector<int> met;                 ///< pairs that met after all, or too late: nothing of them is left out
 };
 
 /// Finds what may touch within the step, starting from where the step starts, within `alarm` [m] of each other, or what
 /// a pair's targets ask for; forces that the iterate has are kept.
 ///
 /// A contact holds along a direction that is chosen at the start. Of a corner ahead of an edge that is the one from the
-/// edge to the corner, which would stop what passes above or beside it in this step: what the velocities of the start
-/// lead past the whole other object, clear of it, takes no part (`ContactRoom::passing`), unless `earlier` looks know
-/// better. The iterate is the first guess of the step, without those velocities.
+/// edge to the corner, which would stop what passes above or beside it in this step. Corners that the velocities of the
+/// start lead past the whole other object, clear of it, take no part, nor do edges that they lead past all of its edges
+/// (`ContactRoom::passing`), unless `earlier` looks know better. The iterate is the first guess of the step, without
+/// those velocities.
 void find_contacts(const StepContext& context, State& iterate, ContactRoom& room, double alarm,
                    const EarlierLooks& earlier = {});
 

@@ -39,7 +39,6 @@ void move_by(const StepContext& context, double time, State& guess) {
 }
 
 void move_on(const StepContext& context, double part, State& guess) {
-  constexpr double kMostTurn = 1.0;  // [rad]
   double time = part * context.h;
   for (const rigid::Motion& own : context.start.bodies) {
     if (time * own.w.norm() > kMostTurn) time = kMostTurn / own.w.norm();

@@ -59,7 +59,7 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   context.set(start, command, h);
   context.rate = rate;
   memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context), {{}, true});
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
   return solve_there(memory, tangent, times, steer);
 }
 
@@ -70,7 +70,7 @@ void agree(const Model& model, Memory& memory, const State& state, double time, 
   context.set(state, told, time - state.time);
   context.rate = 0.0;
   memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context), {{}, true});
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
   memory.here.evaluate(context, memory.iterate.state, times);
   const auto [A, b] = agreement(model, memory.here.reduced());
   if (b.size() == 0) return;
@@ -84,7 +84,7 @@ bool linearize_step(Memory& memory, const State& start, const Command& command, 
                     const Linearization::Steer& steer) {
   memory.context.set(start, command, h);
   memory.alarm = alarm_distance(memory.context);
-  memory.looks = {{}, true};
+  memory.looks = {};
   begin_step(memory);
   place_held(memory.context, memory.iterate.state);
   return solve_there(memory, solid::Tangent::definite, times, steer);

@@ -109,15 +109,16 @@ NewtonRules step_rules(const Model& model, const Effort& effort);
 
 /// Repeats a step as long as its second look finds contacts that were not looked for, each time within a longer
 /// distance, or something that was taken to fly past and has not, or some that press where nothing is, without them; a
-/// few times at most. `make` makes it with
-/// Memory::alarm, which begins as `alarm`, and Memory::looks.
+/// few times at most. `make` makes it with Memory::alarm, which begins as `alarm`, and Memory::looks.
 template <class Make>
 StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
   constexpr int kLooks = 4;
   const auto look_better = [&memory] {
     const Passage& passage = memory.passage;
     if (passage.kind == Passage::Kind::missed) memory.alarm = std::max(2.0 * memory.alarm, 1.5 * passage.alarm);
-    memory.looks.met = memory.looks.met || passage.kind == Passage::Kind::met || passage.kind == Passage::Kind::missed;
+    std::vector<int>& met = memory.looks.met;
+    met.insert(met.end(), passage.met.begin(), passage.met.end());
+    if (passage.kind == Passage::Kind::missed) met.push_back(passage.pair);
     std::vector<ContactKey>& behind = memory.looks.left_behind;
     behind.insert(behind.end(), passage.left_behind.begin(), passage.left_behind.end());
     return passage.kind == Passage::Kind::missed || passage.kind == Passage::Kind::met ||

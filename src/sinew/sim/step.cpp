@@ -134,7 +134,6 @@ double off_converged(Memory& memory, NewtonRules rules) {
   rules.fixed = false;
   rules.inverse = nullptr;
   Iterate linearised = memory.iterate;
-  memory.looks = {{}, true};
   const Command command = context.command, before = command_of(model, context.start);
   const double h = context.h;
   const auto converges_in = [&](int parts) {
