@@ -6,10 +6,10 @@
 //
 // A pair that meets and was no candidate makes the step be done again with a longer alarm distance. Contacts keep the
 // two parts that they were found with, and the plane of a face has no end: where one presses though the two objects are
-// apart, the step is done again without it. What was taken to fly past and does not makes it be done again with all. A
-// pair that was a candidate and still comes deeper than a quarter of the thinner of the two makes it be refused. So
-// does a rod whose curve lies that deep in a rigid shape between the places where it touches: it folds within a
-// section; and an edge that lies that deep between the nodes of a surface.
+// apart, the step is done again without it. Where something was taken to fly past and does not, it is done again with
+// all contacts of that pair. A pair that was a candidate and still comes deeper than a quarter of the thinner of the
+// two makes it be refused. So does a rod whose curve lies that deep in a rigid shape between the places where it
+// touches: it folds within a section; and an edge that lies that deep between the nodes of a surface.
 #pragma once
 
 #include "sinew/sim/contacts.hpp"

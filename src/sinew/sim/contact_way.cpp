@@ -92,13 +92,32 @@ double overlap_of_shapes(const StepMotion& motion, const PairModel& pair, double
 
 namespace {
 
-/// The furthest that anything of a body or an obstacle moves as this turns [m]; of a half-space, as far as the model is
-/// large.
+/// [m] of anything that moves from a place.
+double farthest_from(const Moment& now, const Vec3& place) {
+  double far = 0.0;
+  for (const SolidState& solid : now.state.solids)
+    far = std::max(far, (solid.x.colwise() - place).colwise().norm().maxCoeff());
+  Eigen::Matrix3Xd points;
+  for (std::size_t i = 0; i < now.model.rods.size(); ++i) {
+    if (now.model.rods[i].touching.empty()) continue;
+    touching_points(now, static_cast<int>(i), points);
+    far = std::max(far, (points.colwise() - place).colwise().norm().maxCoeff());
+  }
+  for (std::size_t i = 0; i < now.state.bodies.size(); ++i) {
+    const double reach = contact::reach(now.model.bodies[i].shape, Eigen::Matrix3d::Identity()).norm();
+    far = std::max(far, (now.state.bodies[i].p - place).norm() + reach);
+  }
+  return far;
+}
+
+/// The furthest that anything of a body or an obstacle moves as this turns [m]; of a half-space, where something is.
 double farthest_by_turning(const StepMotion& motion, const Collider& rigid) {
-  const Model& model = motion.start.model;
   const double turn = turn_of(motion, rigid);
   if (turn == 0.0) return 0.0;
-  return turn * std::min(contact::reach(shape_of(model, rigid), Eigen::Matrix3d::Identity()).norm(), model.size);
+  const double reach = contact::reach(shape_of(motion.start.model, rigid), Eigen::Matrix3d::Identity()).norm();
+  if (!std::isinf(reach)) return turn * reach;
+  return turn * std::max(farthest_from(motion.start, motion.start.pose(rigid).p),
+                         farthest_from(motion.end, motion.end.pose(rigid).p));
 }
 
 }  // namespace

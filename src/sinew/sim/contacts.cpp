@@ -170,7 +170,7 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
   return {nearest.gap, approach, approach + along(own.a, nearest.a) - along(own.b, nearest.b), facing, closes};
 }
 
-/// Whether a contact is one of a corner or of two edges, of two different solids or rigid bodies.
+/// Whether a contact is one of a corner or of two edges, of two different solids or rigid shapes.
 bool of_corner_or_edges(const ContactState& own) {
   if (own.a.on.kind == Kind::rod || own.b.on.kind == Kind::rod || own.a.on == own.b.on) return false;
   const Simplex &a = own.a.local, &b = own.b.local;
@@ -355,7 +355,8 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   began.reserve(iterate.contacts.size());
   for (const ContactState& own : iterate.contacts) began.push_back(beginning(context, own, start));
   room.passing.clear();
-  if (context.rate > 0.0) let_pass(context, start, earlier_looks.met, iterate, began, room);
+  if (context.rate > 0.0 && !earlier_looks.nothing_passes)
+    let_pass(context, start, earlier_looks.met, iterate, began, room);
   room.least.clear();
   room.gaps.clear();
   room.facings.clear();

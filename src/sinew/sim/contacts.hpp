@@ -37,8 +37,8 @@ struct ContactRoom {
   std::vector<contact::Facing> facings;        ///< of each contact, as it is at the start
   std::vector<ContactKey> found;               ///< ascending
   std::vector<int> left_out;                   ///< pairs of which a contact is not met in this step
-  /// Contacts of points that fly past the other object, and of rigid shapes that fly past each other: they are not met
-  /// in this step.
+  /// Contacts of corners and edges that fly past the other object, and of rigid shapes that fly past each other: they
+  /// are not met in this step.
   std::vector<ContactState> passing;
   std::vector<Touch> touches;
   /// Contacts that have come near enough in this step to matter, ascending; the others are open and only watched.
@@ -56,7 +56,8 @@ struct ContactRoom {
 /// What earlier looks at a step have found (sim/contact_passage).
 struct EarlierLooks {
   std::vector<ContactKey> left_behind;  ///< contacts that pressed where the two were apart: they take no part
-  std::vector<int> met;                 ///< pairs that met after all, or too late: nothing of them is left out
+  std::vector<int> met;                 ///< pairs that met after all, or were not looked for: nothing of them passes
+  bool nothing_passes = false;          ///< nothing is taken to fly past
 };
 
 /// Finds what may touch within the step, starting from where the step starts, within `alarm` [m] of each other, or what

@@ -14,8 +14,8 @@ void first_guess(const StepContext& context, State& guess);
 /// Moves it on with the velocities of the start for a time [s]; a solid that a moving frame carries stays.
 void move_by(const StepContext& context, double time, State& guess);
 
-/// [rad] by which a body may turn in a step and still move, as its first guess and looks at contacts have it, on the
-/// shortest way from where it starts to where it ends.
+/// [rad] by which a body may turn in a step and still move on the shortest way from where it starts to where it ends,
+/// as the first guess has it.
 inline constexpr double kMostTurn = 1.0;
 
 /// Moves it on, as `move_by` does, for a part of the step, or for as long as no body turns by more than kMostTurn.

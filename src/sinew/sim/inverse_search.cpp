@@ -42,6 +42,13 @@ constexpr double kMet = 0.5e-4;
 /// What is not worth another turn.
 constexpr double kNoGain = 1e-8;
 
+/// Where no second look follows, nothing is taken to fly past.
+EarlierLooks all_contacts() {
+  EarlierLooks looks;
+  looks.nothing_passes = true;
+  return looks;
+}
+
 /// Solves the linear problem at Memory::iterate in Memory::context; false where a matrix is singular.
 bool solve_there(Memory& memory, solid::Tangent tangent, StageTimes& times, const Linearization::Steer& steer) {
   memory.here.evaluate(memory.context, memory.iterate.state, times);
@@ -59,7 +66,7 @@ bool linearize_at(Memory& memory, const State& start, const State& state, const 
   context.set(start, command, h);
   context.rate = rate;
   memory.iterate.state = state;
-  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context));
+  find_contacts(context, memory.iterate.state, memory.here.contacts(), alarm_distance(context), all_contacts());
   return solve_there(memory, tangent, times, steer);
 }
 
@@ -84,7 +91,7 @@ bool linearize_step(Memory& memory, const State& start, const Command& command, 
                     const Linearization::Steer& steer) {
   memory.context.set(start, command, h);
   memory.alarm = alarm_distance(memory.context);
-  memory.looks = {};
+  memory.looks = all_contacts();
   begin_step(memory);
   place_held(memory.context, memory.iterate.state);
   return solve_there(memory, solid::Tangent::definite, times, steer);

@@ -113,12 +113,13 @@ NewtonRules step_rules(const Model& model, const Effort& effort);
 template <class Make>
 StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
   constexpr int kLooks = 4;
-  const auto look_better = [&memory] {
+  const auto look_better = [&memory](bool last) {
     const Passage& passage = memory.passage;
     if (passage.kind == Passage::Kind::missed) memory.alarm = std::max(2.0 * memory.alarm, 1.5 * passage.alarm);
     std::vector<int>& met = memory.looks.met;
     met.insert(met.end(), passage.met.begin(), passage.met.end());
     if (passage.kind == Passage::Kind::missed) met.push_back(passage.pair);
+    memory.looks.nothing_passes = last && !met.empty();
     std::vector<ContactKey>& behind = memory.looks.left_behind;
     behind.insert(behind.end(), passage.left_behind.begin(), passage.left_behind.end());
     return passage.kind == Passage::Kind::missed || passage.kind == Passage::Kind::met ||
@@ -127,7 +128,7 @@ StepReport look_until_found(Memory& memory, double alarm, const Make& make) {
   memory.alarm = alarm;
   memory.looks = {};
   StepReport report = make();
-  for (int looks = 1; looks < kLooks && look_better(); ++looks) {
+  for (int looks = 1; looks < kLooks && look_better(looks + 1 == kLooks); ++looks) {
     const StepReport earlier = std::move(report);
     report = make();
     add_effort(earlier, report);

@@ -140,8 +140,11 @@ double off_converged(Memory& memory, NewtonRules rules) {
     for (int part = 1; part <= parts; ++part) {
       if (part > 1) std::swap(context.start, memory.iterate.state);
       context.set(part == parts ? command : between(before, command, static_cast<double>(part) / parts), h / parts);
-      begin_step(memory);
-      if (!accepted(newton([](double, StepContext&) {}, memory, rules, memory.iterate).status)) return false;
+      const StepReport report = look_until_found(memory, alarm_distance(context), [&] {
+        begin_step(memory);
+        return newton([](double, StepContext&) {}, memory, rules, memory.iterate);
+      });
+      if (!accepted(report.status)) return false;
     }
     return true;
   };
