@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "sinew/sim/contact_way.hpp"
@@ -126,25 +127,21 @@ double deepest_between(const Moment& now, const PairModel& pair) {
 }
 
 /// What of a pair was taken to fly past (`ContactRoom::passing` goes by pairs).
-auto passing(const ContactRoom& room, int number) {
-  struct ByPair {
-    bool operator()(const ContactState& own, int pair) const { return own.pair < pair; }
-    bool operator()(int pair, const ContactState& own) const { return pair < own.pair; }
-  };
-  return std::equal_range(room.passing.begin(), room.passing.end(), number, ByPair());
+std::span<const ContactState> passing_of(const ContactRoom& room, int pair) {
+  const auto of_pair = std::ranges::equal_range(room.passing, pair, {}, &ContactState::pair);
+  return {of_pair.begin(), of_pair.end()};
 }
 
 /// Whether what was taken to fly past has stayed clear of the other object, if by half as much.
-bool all_stay_clear(const StepMotion& motion, const ContactRoom& room, int number, double speed) {
+bool all_stay_clear(const StepMotion& motion, const ContactRoom& room, std::span<const ContactState> passing,
+                    int number, double speed) {
   const Model& model = motion.start.model;
   const double margin = 0.5 * kClearance * room.thin[static_cast<std::size_t>(number)];
   const PairModel& pair = model.pairs[static_cast<std::size_t>(number)];
   if (are_shapes(model, pair)) return shapes_stay_clear(motion, pair, margin);
-  const auto [first, last] = passing(room, number);
-  return std::all_of(first, last,
-                     [&](const ContactState& own) {
-                       return own.a.local.kind != contact::Simplex::Kind::point ||
-                              point_stays_clear(motion, own, room.surfaces, speed, margin);
+  return std::all_of(passing.begin(), passing.end(),
+                     [&](const ContactState& candidate) {
+                       return point_stays_clear(motion, candidate, room.surfaces, speed, margin);
                      }) &&
          edges_stay_clear(motion, room.surfaces, number, speed, margin);
 }
@@ -211,6 +208,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   std::vector<ContactState> candidates;
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
     const PairModel& pair = model.pairs[i];
+    const auto number = static_cast<int>(i);
     const double speed = motion_of(pair.a) + motion_of(pair.b);
     found.alarm = std::max(found.alarm, speed);
     const double thin = room.thin[i];
@@ -220,11 +218,10 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     note(Passage::Kind::folded, i, between, kDeepest * thin);
     const bool rods_meet = pair.a.kind == Kind::rod || pair.b.kind == Kind::rod;  // (their chords may lie too deep)
     const auto cut_at = [&](const Moment& now, const Surfaces& surfaces) {
-      return depth_between_triangles(now, surfaces, static_cast<int>(i)) - pair.depth;
+      return depth_between_triangles(now, surfaces, number) - pair.depth;
     };
-    const auto number = static_cast<int>(i);
-    const auto [first_passing, last_passing] = passing(room, number);
-    const bool shapes = are_shapes(model, pair), some_pass = first_passing != last_passing;
+    const std::span<const ContactState> passing = passing_of(room, number);
+    const bool shapes = are_shapes(model, pair), some_pass = !passing.empty();
     const auto note_met = [&](double depth, double most) {
       if (depth > most) found.met.push_back(number);
       note(Passage::Kind::met, i, depth, most);
@@ -252,9 +249,8 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     }
     // Two that were apart have to move by the thickness of both to get to each other's other side. (What is not met may
     // come in however little it moves.)
-    const bool all_are_met =
-        std::find(room.left_out.begin(), room.left_out.end(), static_cast<int>(i)) == room.left_out.end();
-    if (some_pass && !all_stay_clear(motion, room, static_cast<int>(i), speed)) note_met(kClearance * thin, 0.0);
+    const bool all_are_met = std::find(room.left_out.begin(), room.left_out.end(), number) == room.left_out.end();
+    if (some_pass && !all_stay_clear(motion, room, passing, number, speed)) note_met(kClearance * thin, 0.0);
     if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {
@@ -268,7 +264,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
       continue;
     }
     candidates.clear();
-    search_whole(start, speed, std::max(pair.depth, 1e-3 * model.size), room.surfaces, static_cast<int>(i), candidates);
+    search_whole(start, speed, std::max(pair.depth, 1e-3 * model.size), room.surfaces, number, candidates);
     for (const ContactState& own : candidates) {
       const std::pair<int, std::uint64_t> key(own.pair, own.part);
       // (What the chord of a bent rod overlaps at the start would not be found with any other alarm distance either.)

@@ -231,6 +231,7 @@ bool shapes_stay_clear(const StepMotion& motion, const PairModel& pair, double m
 
 bool point_stays_clear(const StepMotion& motion, const ContactState& own, const Surfaces& surfaces, double speed,
                        double margin) {
+  if (own.a.local.kind != Simplex::Kind::point) return true;
   const Model& model = motion.start.model;
   if (is_shape(model, own.b.on)) return parts_stay_clear(motion, own, speed, margin);
   constexpr double kTurnOfPiece = 0.05;  // [rad] on which a point goes straight, as the other one sees it

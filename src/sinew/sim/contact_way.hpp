@@ -44,8 +44,8 @@ double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double
 // Whether things stay clear of each other on all of their way: by more than `margin` [m] wherever that is looked at, by
 // half of it in between; not so where it takes too long to tell. Nothing is stepped over.
 
-/// The thin point that is the first part of a contact, and the whole of the other object. `surfaces` are those of the
-/// start.
+/// The thin point that is the first part of a contact, if it is one, and the whole of the other object; edges are left
+/// to `edges_stay_clear`. `surfaces` are those of the start.
 bool point_stays_clear(const StepMotion& motion, const ContactState& own, const Surfaces& surfaces, double speed,
                        double margin);
 /// Two rigid shapes.

@@ -171,9 +171,10 @@ Beginning beginning(const StepContext& context, const ContactState& own, const M
 }
 
 /// Whether a contact is one of a corner or of two edges, of two different solids or rigid shapes.
-bool of_corner_or_edges(const ContactState& own) {
-  if (own.a.on.kind == Kind::rod || own.b.on.kind == Kind::rod || own.a.on == own.b.on) return false;
-  const Simplex &a = own.a.local, &b = own.b.local;
+bool of_corner_or_edges(const ContactState& candidate) {
+  const Collider &first = candidate.a.on, &second = candidate.b.on;
+  if (first.kind == Kind::rod || second.kind == Kind::rod || first == second) return false;
+  const Simplex &a = candidate.a.local, &b = candidate.b.local;
   return (a.kind == Simplex::Kind::point && a.radius == 0.0) ||
          (a.kind == Simplex::Kind::segment && b.kind == Simplex::Kind::segment);
 }
@@ -233,8 +234,7 @@ void let_pass(const StepContext& context, const Moment& start, const std::vector
     if (edges == Way::meets) return false;
     if (speed < 0.0) speed = farthest(motion, room.surfaces, pair.a) + farthest(motion, room.surfaces, pair.b);
     const double margin = kClearance * room.thin[number];
-    if (own.a.local.kind == Simplex::Kind::point && !point_stays_clear(motion, own, room.surfaces, speed, margin))
-      return false;
+    if (!point_stays_clear(motion, own, room.surfaces, speed, margin)) return false;
     if (edges == Way::near)
       edges = edges_stay_clear(motion, room.surfaces, own.pair, speed, margin) ? Way::passes : Way::meets;
     return edges == Way::passes;
