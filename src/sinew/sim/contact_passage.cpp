@@ -128,8 +128,9 @@ double deepest_between(const Moment& now, const PairModel& pair) {
 
 /// What of a pair was taken to fly past (`ContactRoom::passing` goes by pairs).
 std::span<const ContactState> passing_of(const ContactRoom& room, int pair) {
-  const auto of_pair = std::ranges::equal_range(room.passing, pair, {}, &ContactState::pair);
-  return {of_pair.begin(), of_pair.end()};
+  const auto end = room.passing.end();
+  const auto first = std::partition_point(room.passing.begin(), end, [&](const auto& one) { return one.pair < pair; });
+  return {first, std::partition_point(first, end, [&](const auto& one) { return one.pair == pair; })};
 }
 
 /// Whether what was taken to fly past has stayed clear of the other object, if by half as much.
