@@ -15,7 +15,7 @@ NUMBERS = {
 
 
 # Variations of faults of which some numbers end with a status.
-MAY_STOP = {"tendons", "endwise", "loop", "tunnel", "thin_struck"}
+MAY_STOP = {"tendons", "endwise", "loop", "tunnel", "thin_struck", "folds"}
 
 
 @pytest.mark.parametrize("kind", NUMBERS)

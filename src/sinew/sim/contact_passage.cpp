@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "sinew/sim/contact_folds.hpp"
 #include "sinew/sim/contact_way.hpp"
 
 namespace sinew {
@@ -65,65 +66,6 @@ double beyond_its_parts(const StepMotion& motion, const ContactState& own, const
     more = std::min(more, there - gap);
   }
   return more > most ? more : 0.0;
-}
-
-/// How far a place is outside the box of a shape along the axis where that is most; negative inside.
-double outside(const Vec3& local, const Vec3& reach) { return (local.cwiseAbs() - reach).maxCoeff(); }
-
-/// What the axis of a section may be long at most [m]: Legendre polynomials are at most 1.
-double longest(const rod::Configuration& shape, int section) {
-  const rod::Section& own = shape.rod->sections[section];
-  return own.length() * shape.strains[section].bottomRows<3>().colwise().norm().sum();
-}
-
-/// How deep the curve of a rod lies in a rigid shape between the points and pieces by which it touches: a rod that
-/// folds within one section may. 0 for other pairs.
-double deepest_between(const Moment& now, const PairModel& pair) {
-  const bool first = pair.a.kind == Kind::rod;
-  const Collider &bent = first ? pair.a : pair.b, &hard = first ? pair.b : pair.a;
-  const Model& model = now.model;
-  if (bent.kind != Kind::rod || !is_shape(model, hard)) return 0.0;
-  constexpr int kPlacesOfPiece = 4;
-  const RodModel& rod = model.rods[bent.number];
-  const contact::Pose pose = now.pose(hard);
-  const Vec3 reach = contact::reach(shape_of(model, hard), Eigen::Matrix3d::Identity());
-  double deepest = 0.0;
-  const rod::Configuration& shape = now.rods[bent.number];
-  const auto local = [&](double s) -> Vec3 { return pose.R.transpose() * (rod::position(shape, s) - pose.p); };
-  const auto depth = [&](const Vec3& place, double radius) {
-    return -gap_to_shape(shape_of(model, hard), place, radius);
-  };
-  int section = -1;
-  double away = 0.0;  // at least so far outside, along one axis of the shape's box, is the axis of that section
-  for (std::size_t i = 0; i + 1 < rod.touching.size(); ++i) {
-    const double between = (rod.touching[i + 1] - rod.touching[i]) / kPlacesOfPiece;
-    double deepest_here = 0.0, there = 0.0;
-    for (int k = 1; k < kPlacesOfPiece; ++k) {
-      const double s = rod.touching[i] + k * between;
-      const double radius = rod::radius_at(rod.rod.profile, s);
-      if (const int own = rod.rod.section_at(s); own != section) {
-        section = own;
-        away = outside(pose.R.transpose() * (shape.p[own] - pose.p), reach) - longest(shape, own);
-      }
-      if (away >= radius) continue;
-      const Vec3 place = local(s);
-      if (outside(place, reach) >= radius) continue;
-      const double own = depth(place, radius);
-      if (own > deepest_here) {
-        deepest_here = own;
-        there = s;
-      }
-    }
-    if (deepest_here <= 0.0) continue;
-    // The lowest place of a sharp fold lies between those looked at: the vertex of the parabola through three of them.
-    const double radius = rod::radius_at(rod.rod.profile, there);
-    const double before = depth(local(there - between), radius), after = depth(local(there + between), radius);
-    const double bend = 2.0 * deepest_here - before - after, lean = after - before;
-    if (std::abs(lean) < bend)
-      deepest_here = std::max(deepest_here, depth(local(there + 0.5 * between * lean / bend), radius));
-    deepest = std::max(deepest, deepest_here);
-  }
-  return deepest;
 }
 
 /// What of a pair was taken to fly past (`ContactRoom::passing` goes by pairs).
@@ -214,7 +156,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     found.alarm = std::max(found.alarm, speed);
     const double thin = room.thin[i];
     // (Whatever was found: chords of what has folded may lie too deep to be met.)
-    const double between = deepest_between(end, pair) - pair.depth;
+    const double between = deepest_between(motion, pair) - pair.depth;
     note_overlap(i, between, kDeepestBetween * thin);
     note(Passage::Kind::folded, i, between, kDeepest * thin);
     const bool rods_meet = pair.a.kind == Kind::rod || pair.b.kind == Kind::rod;  // (their chords may lie too deep)
@@ -253,6 +195,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const bool all_are_met = std::find(room.left_out.begin(), room.left_out.end(), number) == room.left_out.end();
     if (some_pass && !all_stay_clear(motion, room, passing, number, speed)) note_met(kClearance * thin, 0.0);
     if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
+    note(Passage::Kind::folded, i, deepest_between_on_way(motion, pair, speed, thin) - pair.depth, kDeepest * thin);
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {
         note(Passage::Kind::passed, i, depth, kDeepest * thin);

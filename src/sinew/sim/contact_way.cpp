@@ -20,10 +20,6 @@ using contact::Simplex;
 constexpr int kPlaces = 64;        ///< on the way are looked at at least where parts are near
 constexpr int kMostPlaces = 4096;  ///< and at most: a motion of a thousand times the thinner of the two
 
-contact::Pose between(const contact::Pose& from, const contact::Pose& to, double t) {
-  return {from.R * lie::exp(t * lie::log(from.R.transpose() * to.R)), from.p + t * (to.p - from.p)};
-}
-
 /// By how much a body or an obstacle turns on its way [rad].
 double turn_of(const StepMotion& motion, const Collider& rigid) {
   return lie::log(motion.start.pose(rigid).R.transpose() * motion.end.pose(rigid).R).norm();
@@ -32,7 +28,7 @@ double turn_of(const StepMotion& motion, const Collider& rigid) {
 /// A part of an object on its way.
 Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
   if (is_rigid(side.on))
-    return contact::moved(between(motion.start.pose(side.on), motion.end.pose(side.on), t), side.local);
+    return contact::moved(pose_between(motion.start.pose(side.on), motion.end.pose(side.on), t), side.local);
   Simplex own = motion.start.placed(side);
   const Simplex to = motion.end.placed(side);
   for (std::size_t i = 0; i < static_cast<std::size_t>(own.corners()); ++i) own.x[i] += t * (to.x[i] - own.x[i]);
@@ -41,11 +37,17 @@ Simplex placed(const StepMotion& motion, const ContactSide& side, double t) {
 
 }  // namespace
 
+contact::Pose pose_between(const contact::Pose& from, const contact::Pose& to, double t) {
+  return {from.R * lie::exp(t * lie::log(from.R.transpose() * to.R)), from.p + t * (to.p - from.p)};
+}
+
+double shortest_look(double speed, double thin) { return std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0); }
+
 double separation(const StepMotion& motion, const ContactState& own, double t) {
   const Simplex a = placed(motion, own.a, t);
   const Model& model = motion.start.model;
   if (a.kind == Simplex::Kind::point && is_shape(model, own.b.on)) {
-    const contact::Pose pose = between(motion.start.pose(own.b.on), motion.end.pose(own.b.on), t);
+    const contact::Pose pose = pose_between(motion.start.pose(own.b.on), motion.end.pose(own.b.on), t);
     return gap_to_shape(shape_of(model, own.b.on), pose.R.transpose() * (a.x[0] - pose.p), a.radius);
   }
   const Simplex b = placed(motion, own.b, t);
@@ -68,8 +70,8 @@ struct Apart {
 Apart apart_on_way(const StepMotion& motion, const PairModel& pair, double t, double alarm) {
   std::vector<contact::Meeting> meetings;
   const Model& model = motion.start.model;
-  const contact::Pose a = between(motion.start.pose(pair.a), motion.end.pose(pair.a), t),
-                      b = between(motion.start.pose(pair.b), motion.end.pose(pair.b), t);
+  const contact::Pose a = pose_between(motion.start.pose(pair.a), motion.end.pose(pair.a), t),
+                      b = pose_between(motion.start.pose(pair.b), motion.end.pose(pair.b), t);
   contact::meet(shape_of(model, pair.a), a, shape_of(model, pair.b), b, alarm, meetings);
   Apart least;
   for (const contact::Meeting& own : meetings) {
@@ -146,7 +148,7 @@ double farthest(const StepMotion& motion, const Surfaces& surfaces, const Collid
 double deepest_of_parts(const StepMotion& motion, const ContactState& own, double speed, double thin) {
   const double before = std::min(0.0, separation(motion, own, 0.0));
   // (No thin thing is stepped over, up to what a motion may cost at all.)
-  const double shortest = std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0 / kPlaces);
+  const double shortest = std::min(shortest_look(speed, thin), 1.0 / kPlaces);
   double deepest = 0.0;
   for (double t = 0.0;;) {
     const double gap = separation(motion, own, t);
@@ -157,7 +159,7 @@ double deepest_of_parts(const StepMotion& motion, const ContactState& own, doubl
 }
 
 double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
-  const double shortest = std::clamp(0.25 * thin / speed, 1.0 / kMostPlaces, 1.0);
+  const double shortest = shortest_look(speed, thin);
   const double before = pair.depth > 0.0 ? overlap_of_shapes(motion, pair, 0.0) : 0.0;
   double deepest = 0.0;
   for (double t = 0.0;;) {
@@ -253,7 +255,7 @@ bool point_stays_clear(const StepMotion& motion, const ContactState& own, const 
   const auto seen = [&](double t) -> Vec3 {
     Vec3 x = placed(motion, own.a, t).x[0];
     if (!rigid) return x;
-    const contact::Pose now = between(before, motion.end.pose(own.b.on), t);
+    const contact::Pose now = pose_between(before, motion.end.pose(own.b.on), t);
     return before * (now.R.transpose() * (x - now.p));
   };
   const auto& mesh = *surface.mesh;

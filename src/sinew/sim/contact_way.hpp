@@ -21,6 +21,13 @@ struct StepMotion {
   const Moment &start, &end;
 };
 
+/// Where something rigid is at a part `t` of its way.
+contact::Pose pose_between(const contact::Pose& from, const contact::Pose& to, double t);
+
+/// The longest stretch of a way of two that is not looked at where they may overlap, 0 to 1: a quarter of the thickness
+/// of the thinner [m], unless they move, by `speed` [m] at most, by more than a thousand of them.
+double shortest_look(double speed, double thin);
+
 /// Distance of two parts less their thickness [m]; below zero only where they overlap at that time, wherever they came
 /// from: past the rim of a triangle it has no inside, and the plane of a face ends with its shape.
 double separation(const StepMotion& motion, const ContactState& own, double t);
