@@ -346,6 +346,7 @@ namespace {
 /// Energies of rods and rigid bodies, which contacts move at once.
 struct Loose {
   double kinetic = 0.0, elastic = 0.0, weight = 0.0;
+  double total() const { return kinetic + elastic + weight; }
 };
 Loose loose_energy(const Model& model, const State& state) {
   Loose own;
@@ -377,12 +378,14 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   constexpr double kAtRest = 1e-6;  // of weight times size: what all but rests has next to no energy to gain from
   const Model& model = context.model;
   if (context.rate == 0.0 || next.contacts.empty()) return {};
-  // Most steps are done with here: nothing that is loose has become faster, but by falling.
+  // Most steps are done with here: what is loose has no more energy than falling and all that moves it have given.
   const Loose before = loose_energy(model, context.start), after = loose_energy(model, next);
+  const double done = next.energies.work_bound - context.start.energies.work_bound;
   const double faster = after.kinetic - before.kinetic - std::max(0.0, before.weight - after.weight);
-  if (faster <= kGain * std::max(before.kinetic + before.elastic, after.kinetic + after.elastic)) return {};
+  const double more = std::max(faster, after.total() - before.total() - std::max(0.0, done));
+  if (more <= kGain * std::max(before.kinetic + before.elastic, after.kinetic + after.elastic)) return {};
   const EnergyBalance from = energy_balance(model, context.start), to = energy_balance(model, next);
-  const double gain = to.total() - from.total() - (next.energies.work_bound - context.start.energies.work_bound);
+  const double gain = to.total() - from.total() - done;
   const double size = std::max(from.kinetic + from.elastic, to.kinetic + to.elastic);
   const double weight = inertia_of(context) / context.rate / context.rate * context.gravity.norm();
   if (!(gain > std::max(kGain * size, kAtRest * weight * model.size)) || !(size > 1e-14 * model.bearing * model.size))
