@@ -1,5 +1,6 @@
 // A peg that a frame draws into a clamped rod, which folds around it within a section: it went through the fold within
-// a step, `converged`, because pieces of the rod were looked at on the way by their chords alone.
+// a step, `converged`, because pieces of the rod were looked at on the way by their chords alone; where both are thin,
+// because its axis was looked at at three places a piece.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -91,7 +92,21 @@ INSTANTIATE_TEST_SUITE_P(
                          "0.04652897039854823",
                          "0.09748116485092391",
                          "0.02",
-                         {"time.step=1 ms", "contact.friction=0.8", "rods.r.material.young=37737323.07810287"}}),
+                         {"time.step=1 ms", "contact.friction=0.8", "rods.r.material.young=37737323.07810287"}},
+                    Draw{"Thin",
+                         "0.048038145430113005",
+                         "0.0753088199972436",
+                         "0.02",
+                         {"contact.friction=0.8", "rods.r.material.young=9280766.45221372",
+                          "rods.r.section.circle.radius=0.0003567845505854688",
+                          "obstacles.peg.cylinder.radius=0.00035733493506854273"}},
+                    Draw{"ThinAndStiff",
+                         "0.032443147992484565",
+                         "0.1146661084472422",
+                         "0.02",
+                         {"time.step=1 ms", "contact.friction=0", "rods.r.material.young=354267820.4927019",
+                          "rods.r.section.circle.radius=0.0003727276999686727",
+                          "obstacles.peg.cylinder.radius=0.0002797019407000977"}}),
     [](const auto& one) { return one.param.name; });
 
 }  // namespace

@@ -378,7 +378,7 @@ std::string contact_adds_energy(const StepContext& context, const State& next) {
   constexpr double kAtRest = 1e-6;  // of weight times size: what all but rests has next to no energy to gain from
   const Model& model = context.model;
   if (context.rate == 0.0 || next.contacts.empty()) return {};
-  // Most steps are done with here: what is loose has no more energy than falling and all that moves it have given.
+  // Most steps are done with here: what is loose has no more energy than falling, or all that works on it, gives.
   const Loose before = loose_energy(model, context.start), after = loose_energy(model, next);
   const double done = next.energies.work_bound - context.start.energies.work_bound;
   const double faster = after.kinetic - before.kinetic - std::max(0.0, before.weight - after.weight);

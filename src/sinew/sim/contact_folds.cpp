@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <vector>
 
 namespace sinew {
 
@@ -11,89 +11,111 @@ namespace {
 
 using Kind = Collider::Kind;
 
-constexpr int kPlacesOfPiece = 4;  ///< that are looked at, its first end among them
+/// Bounds of the derivatives of an axis x within a section by its abscissa, x' = R v and x'' = R (k x v + v'): Legendre
+/// polynomials are at most 1, their derivatives d (d + 1) / 2.
+struct Bounds {
+  double first = 0.0, second = 0.0;  ///< [-], [1/m]
+};
+Bounds bounds_of(const rod::Configuration& shape, int section) {
+  const rod::Coefficients& strains = shape.strains[section];
+  double turn = 0.0, stretch = 0.0, change = 0.0;
+  for (Eigen::Index d = 0; d < strains.cols(); ++d) {
+    const double part = strains.col(d).tail<3>().norm();
+    turn += strains.col(d).head<3>().norm();
+    stretch += part;
+    change += 0.5 * static_cast<double>(d * (d + 1)) * part;
+  }
+  return {stretch, turn * stretch + 2.0 / shape.rod->sections[section].length() * change};
+}
 
 /// The axis of a rod on its way past a rigid shape, as that sees it.
 class Axis {
  public:
-  Axis(const StepMotion& motion, const Collider& bent, const Collider& hard)
+  Axis(const StepMotion& motion, const Collider& bent, const Collider& hard, double thin)
       : rod_(motion.end.model.rods[bent.number]),
         shape_(shape_of(motion.end.model, hard)),
         from_(motion.start.rods[bent.number]),
         to_(motion.end.rods[bent.number]),
         start_(motion.start.pose(hard)),
         end_(motion.end.pose(hard)),
-        reach_(contact::reach(shape_, Eigen::Matrix3d::Identity())) {}
-
-  /// How deep it lies in the shape between the points by which it touches [m], at a part `t` of the way; negative where
-  /// it is outside by at least as much.
-  double depth(double t) {
-    go_to(t);
-    double deepest = -INFINITY;
-    for (std::size_t i = 0; i + 1 < rod_.touching.size(); ++i) {
-      const double between = (rod_.touching[i + 1] - rod_.touching[i]) / kPlacesOfPiece;
-      double deepest_here = -INFINITY, there = 0.0;
-      for (int k = 1; k < kPlacesOfPiece; ++k) {
-        const double s = rod_.touching[i] + k * between;
-        const double own = depth_at(s, deepest_here);
-        if (own > deepest_here) {
-          deepest_here = own;
-          there = s;
-        }
-      }
-      if (deepest_here > 0.0) deepest_here = std::max(deepest_here, depth_at_vertex(there, between, deepest_here));
-      deepest = std::max(deepest, deepest_here);
+        reach_(contact::reach(shape_, Eigen::Matrix3d::Identity())),
+        enough_(0.05 * thin),
+        aimed_(0.02 * thin) {
+    for (int i = 0; i < rod_.rod.count(); ++i) {
+      bounds_from_.push_back(bounds_of(from_, i));
+      bounds_to_.push_back(bounds_of(to_, i));
     }
-    return deepest;
+  }
+
+  /// By how much more any of its places moves than the farthest of the points by which it touches [m] at most.
+  double moves_more() const {
+    double most = 0.0;
+    for (std::size_t i = 0; i + 1 < rod_.touching.size(); ++i) {
+      const double piece = rod_.touching[i + 1] - rod_.touching[i];
+      const int section = rod_.rod.section_at(0.5 * (rod_.touching[i] + rod_.touching[i + 1]));
+      most = std::max(most, 0.125 * piece * piece * (bounds_from_[section].second + bounds_to_[section].second));
+    }
+    return most;
+  }
+
+  /// The deepest place found at a part `t` of the way [m], and a bound of all; negative where they are outside.
+  struct Depth {
+    double found = -INFINITY, most = -INFINITY;
+  };
+  Depth at(double t) {
+    t_ = t;
+    pose_ = pose_between(start_, end_, t);
+    depth_ = {};
+    int section = -1;
+    double within = 0.0;  // a bound of the depth of that section, less its thickness
+    for (std::size_t i = 0; i + 1 < rod_.touching.size(); ++i) {
+      const double a = rod_.touching[i], b = rod_.touching[i + 1];
+      if (const int own = rod_.rod.section_at(0.5 * (a + b)); own != section) {
+        section = own;
+        bounds_ = {std::lerp(bounds_from_[own].first, bounds_to_[own].first, t),
+                   std::lerp(bounds_from_[own].second, bounds_to_[own].second, t)};
+        within = rod_.rod.sections[own].length() * bounds_.first - outside(local(from_.p[own], to_.p[own]));
+      }
+      const double most = within + std::max(rod::radius_at(rod_.rod.profile, a), rod::radius_at(rod_.rod.profile, b));
+      if (most > enough()) {
+        look(a, b);
+      } else {
+        depth_.most = std::max(depth_.most, most);
+      }
+    }
+    return depth_;
   }
 
  private:
-  void go_to(double t) {
-    t_ = t;
-    pose_ = pose_between(start_, end_, t);
-    section_ = -1;
-  }
+  double enough() const { return std::max(enough_, depth_.found + aimed_); }
 
   Vec3 local(const Vec3& from, const Vec3& to) const {
     return pose_.R.transpose() * (from + t_ * (to - from) - pose_.p);
   }
-  /// (Where it ends it is looked at at each step.)
-  Vec3 local(double s) const {
-    const Vec3 to = rod::position(to_, s);
-    return local(t_ < 1.0 ? rod::position(from_, s) : to, to);
-  }
 
   /// How far a place is outside the box of the shape along the axis where that is most; negative inside.
-  double outside(const Vec3& local) const { return (local.cwiseAbs() - reach_).maxCoeff(); }
+  double outside(const Vec3& place) const { return (place.cwiseAbs() - reach_).maxCoeff(); }
 
-  /// What the axis of a section may be long at most [m]: Legendre polynomials are at most 1.
-  static double longest(const rod::Configuration& shape, int section) {
-    const rod::Section& own = shape.rod->sections[section];
-    return own.length() * shape.strains[section].bottomRows<3>().colwise().norm().sum();
+  double depth_at(double s) const {
+    const Vec3 to = rod::position(to_, s);  // (where it ends it is looked at at each step)
+    const Vec3 place = local(t_ < 1.0 ? rod::position(from_, s) : to, to);
+    return -gap_to_shape(shape_, place, rod::radius_at(rod_.rod.profile, s));
   }
 
-  /// A place that is no deeper than `least` need not be looked at closely.
-  double depth_at(double s, double least) {
-    const double radius = rod::radius_at(rod_.rod.profile, s);
-    if (const int own = rod_.rod.section_at(s); own != section_) {
-      section_ = own;
-      const double reached = (1.0 - t_) * longest(from_, own) + t_ * longest(to_, own);
-      away_ = outside(local(from_.p[own], to_.p[own])) - reached;
+  void look(double a, double b) {
+    const double s = 0.5 * (a + b), half = 0.5 * (b - a), depth = depth_at(s);
+    depth_.found = std::max(depth_.found, depth);
+    double most = depth + half * bounds_.first;
+    if (most > enough()) {
+      const double near = 1e-3 * half, slope = std::max({0.0, depth - depth_at(s - near), depth - depth_at(s + near)});
+      most = std::min(most, depth + half * slope / near + 0.5 * half * (half + near) * bounds_.second);
     }
-    if (away_ >= radius || away_ - radius > -least) return radius - away_;
-    const Vec3 place = local(s);
-    if (const double far = outside(place); far >= radius) return radius - far;
-    return -gap_to_shape(shape_, place, radius);
-  }
-
-  /// The lowest place of a sharp fold lies between those looked at: at the vertex of the parabola through three.
-  double depth_at_vertex(double s, double between, double depth) const {
-    const auto depth_of = [&](double place) {
-      return -gap_to_shape(shape_, local(place), rod::radius_at(rod_.rod.profile, place));
-    };
-    const double before = depth_of(s - between), after = depth_of(s + between);
-    const double bend = 2.0 * depth - before - after, lean = after - before;
-    return std::abs(lean) < bend ? depth_of(s + 0.5 * between * lean / bend) : depth;
+    if (most > enough() && half * bounds_.first > 0.5 * aimed_) {
+      look(a, s);
+      look(s, b);
+    } else {
+      depth_.most = std::max(depth_.most, most);
+    }
   }
 
   const RodModel& rod_;
@@ -101,35 +123,29 @@ class Axis {
   const rod::Configuration &from_, &to_;
   contact::Pose start_, end_, pose_;
   Vec3 reach_;
+  double enough_, aimed_;                        ///< [m] what need not be known, and how well the rest is to be
+  std::vector<Bounds> bounds_from_, bounds_to_;  ///< of each section
   double t_ = 0.0;
-  int section_ = -1;
-  double away_ = 0.0;  ///< at least so far outside, along one axis of the shape's box, is the axis of that section
+  Bounds bounds_;  ///< there, of the section that is looked at
+  Depth depth_;
 };
-
-/// The axis of the rod and the shape that a pair may be of.
-std::optional<Axis> axis_of(const StepMotion& motion, const PairModel& pair) {
-  const bool first = pair.a.kind == Kind::rod;
-  const Collider &bent = first ? pair.a : pair.b, &hard = first ? pair.b : pair.a;
-  if (bent.kind != Kind::rod || !is_shape(motion.end.model, hard)) return std::nullopt;
-  return Axis(motion, bent, hard);
-}
 
 }  // namespace
 
-double deepest_between(const StepMotion& motion, const PairModel& pair) {
-  std::optional<Axis> axis = axis_of(motion, pair);
-  return axis ? std::max(0.0, axis->depth(1.0)) : 0.0;
-}
-
-double deepest_between_on_way(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
-  std::optional<Axis> axis = axis_of(motion, pair);
-  double deepest = 0.0;
-  if (!axis) return deepest;
+FoldDepth depth_of_fold(const StepMotion& motion, const PairModel& pair, double speed, double thin) {
+  FoldDepth deepest;
+  const bool first = pair.a.kind == Kind::rod;
+  const Collider &bent = first ? pair.a : pair.b, &hard = first ? pair.b : pair.a;
+  if (bent.kind != Kind::rod || !is_shape(motion.end.model, hard)) return deepest;
+  Axis axis(motion, bent, hard, thin);
+  deepest.end = std::max(0.0, axis.at(1.0).found);
+  speed += axis.moves_more();
+  if (!(speed > 0.5 * thin)) return deepest;
   const double shortest = shortest_look(speed, thin);
   for (double t = 0.0; t < 1.0;) {
-    const double depth = axis->depth(t);
-    deepest = std::max(deepest, depth);
-    t += std::max(-depth / speed, shortest);
+    const Axis::Depth depth = axis.at(t);
+    deepest.way = std::max(deepest.way, depth.found);
+    t += std::max(-depth.most / speed, shortest);
   }
   return deepest;
 }

@@ -156,9 +156,9 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     found.alarm = std::max(found.alarm, speed);
     const double thin = room.thin[i];
     // (Whatever was found: chords of what has folded may lie too deep to be met.)
-    const double between = deepest_between(motion, pair) - pair.depth;
-    note_overlap(i, between, kDeepestBetween * thin);
-    note(Passage::Kind::folded, i, between, kDeepest * thin);
+    const FoldDepth fold = depth_of_fold(motion, pair, speed, thin);
+    note_overlap(i, fold.end - pair.depth, kDeepestBetween * thin);
+    note(Passage::Kind::folded, i, std::max(fold.end, fold.way) - pair.depth, kDeepest * thin);
     const bool rods_meet = pair.a.kind == Kind::rod || pair.b.kind == Kind::rod;  // (their chords may lie too deep)
     const auto cut_at = [&](const Moment& now, const Surfaces& surfaces) {
       return depth_between_triangles(now, surfaces, number) - pair.depth;
@@ -195,7 +195,6 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
     const bool all_are_met = std::find(room.left_out.begin(), room.left_out.end(), number) == room.left_out.end();
     if (some_pass && !all_stay_clear(motion, room, passing, number, speed)) note_met(kClearance * thin, 0.0);
     if (all_are_met && speed <= std::min(alarm, 0.5 * thin)) continue;
-    note(Passage::Kind::folded, i, deepest_between_on_way(motion, pair, speed, thin) - pair.depth, kDeepest * thin);
     const auto meets = [&](bool was_found, double depth) {
       if (was_found) {
         note(Passage::Kind::passed, i, depth, kDeepest * thin);

@@ -162,22 +162,25 @@ def folds(random_: random.Random) -> tuple[Scene, Judge]:
     """A peg draws a clamped rod into a fold within a section, around it."""
     scene = fault("rod_folds_around_peg")
     rod, peg, hand = scene["rods"]["r"], scene["obstacles"]["peg"], scene["frames"]["hand"]["motion"]
-    length, sections = rod["path"][1][0], rod["sections"]
+    length = rod["path"][1][0]
     duration = scene["time"]["duration"] = 0.02
     scene["time"]["step"] = random_.choice([1e-3, 2e-3])
     scene["contact"]["friction"] = random_.choice([0, 0.3, 0.8])
     rod["material"]["young"] *= 10 ** random_.uniform(-1, 1)
-    rod["order"] = random_.choice([0, 0, 1])
+    rod["order"], rod["sections"] = random_.choice([0, 0, 1]), random_.randint(6, 14)
+    radius, thickness = 10 ** random_.uniform(-3.7, -3.1), 10 ** random_.uniform(-3.7, -3.1)
+    rod["section"]["circle"]["radius"] = radius
+    peg["cylinder"]["radius"] = thickness
     x, y = length * random_.uniform(0.2, 0.6), peg["pose"]["translate"][1]
     peg["pose"]["translate"] = [x, y, 0]
     way = hand["translate"][1][1] * random_.uniform(0.5, 2)
     hand.update(times=[0, duration], translate=[[0, 0, 0], [0, way, 0]])
-    thickness, tilt, half = peg["cylinder"]["radius"], peg["pose"]["rotate"][1], 0.5 * peg["cylinder"]["length"]
+    tilt, half = peg["pose"]["rotate"][1], 0.5 * peg["cylinder"]["length"]
     along = (half * math.sin(tilt), 0.0, half * math.cos(tilt))
     axis: tuple[Vec, Vec] = ((x - along[0], y, -along[2]), (x + along[0], y, along[2]))
-    radius = float(rod["section"]["circle"]["radius"].split()[0]) * 1e-3
-    edge = 0.6 * min(radius, thickness) + 0.02 * length / sections
-    return scene, judge_rod_peg(list(scene["outputs"]), axis, lambda t: (0.0, way * t / duration, 0.0),
+    scene["outputs"], names = rod_points(length, 289)
+    edge = 0.56 * min(radius, thickness)
+    return scene, judge_rod_peg(names, axis, lambda t: (0.0, way * t / duration, 0.0),
                                 thickness + radius, edge)
 
 

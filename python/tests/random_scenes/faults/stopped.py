@@ -43,7 +43,7 @@ def pressed(random_: random.Random) -> tuple[Scene, Judge]:
             slower = off_motion(at(rows[-1], "tip"), 100.0)
             if isinstance(slower, str):
                 return [slower]
-            if slower > 0.4 * off:
+            if slower > min(0.4 * off, 0.015):
                 return [f"the tip is {100 * off:.2g} % off a slow motion's, {100 * slower:.2g} % off a slower one's"]
         return []
 
