@@ -11,7 +11,7 @@ from .scene import Judge, Row, Scene, from_nowhere, shape_of
 
 def gain_of(report: Any) -> Any:
     """The warning of energy that has come from nowhere, if there is one."""
-    return next((own for own in report["warnings"] if own["code"] == "energy_gain"), None)
+    return next((warning for warning in report["warnings"] if warning["code"] == "energy_gain"), None)
 
 
 def moving_frame(random_: random.Random) -> tuple[Scene, Judge]:
@@ -59,16 +59,16 @@ def moving_frame(random_: random.Random) -> tuple[Scene, Judge]:
         scene["outputs"] = {"e": {"solid": "s", "point": [0, 0, 0]}}
 
     def judge(rows: list[Row], report: Any) -> list[str]:
-        told = gain_of(report)
-        if not told:
+        gain = gain_of(report)
+        if not gain:
             return from_nowhere(rows)
         # Long steps do add energy to what buckles or tilts, the less the shorter they are; work that is not counted is
         # missing in short ones, too.
         time = {**scene["time"], "step": h / 8}
         shorter = second({**scene, "time": time})[1]
         if shorter is None:
-            return [told["message"]]
-        still = gain_of(shorter)
-        return [told["message"]] if still and still["worst"] > 0.25 * told["worst"] else []
+            return [gain["message"]]
+        left = gain_of(shorter)
+        return [gain["message"]] if left and left["worst"] > 0.25 * gain["worst"] else []
 
     return scene, judge

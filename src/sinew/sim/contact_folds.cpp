@@ -70,11 +70,11 @@ class Axis {
     double within = 0.0;  // a bound of the depth of that section, less its thickness
     for (std::size_t i = 0; i + 1 < rod_.touching.size(); ++i) {
       const double a = rod_.touching[i], b = rod_.touching[i + 1];
-      if (const int own = rod_.rod.section_at(0.5 * (a + b)); own != section) {
-        section = own;
-        bounds_ = {std::lerp(bounds_from_[own].first, bounds_to_[own].first, t),
-                   std::lerp(bounds_from_[own].second, bounds_to_[own].second, t)};
-        within = rod_.rod.sections[own].length() * bounds_.first - outside(local(from_.p[own], to_.p[own]));
+      if (const int number = rod_.rod.section_at(0.5 * (a + b)); number != section) {
+        section = number;
+        bounds_ = {std::lerp(bounds_from_[number].first, bounds_to_[number].first, t),
+                   std::lerp(bounds_from_[number].second, bounds_to_[number].second, t)};
+        within = rod_.rod.sections[number].length() * bounds_.first - outside(local(from_.p[number], to_.p[number]));
       }
       const double most = within + std::max(rod::radius_at(rod_.rod.profile, a), rod::radius_at(rod_.rod.profile, b));
       if (most > enough()) {

@@ -13,9 +13,9 @@
 
 namespace sinew {
 
-/// How deep the axis of a rod lies in a rigid shape [m], to a fiftieth of the thickness of the thinner of the two, and
-/// 0 below a twentieth: where a step ends, and on the way to there, its places and the shape going as `StepMotion` has
-/// them. 0 for other pairs, and on the way if nothing moves by more than half of that thickness.
+/// How deep the axis of a rod lies in a rigid shape [m], to a fiftieth of the thickness of the thinner of the two
+/// where it is more than a twentieth: where a step ends, and on the way to there, its places and the shape going as
+/// `StepMotion` has them. 0 for other pairs, and on the way if nothing moves by more than half of that thickness.
 struct FoldDepth {
   double end = 0.0, way = 0.0;
 };

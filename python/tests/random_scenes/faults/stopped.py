@@ -20,6 +20,7 @@ def pressed(random_: random.Random) -> tuple[Scene, Judge]:
     scene["solids"]["beam"]["material"].update(young=10 ** random_.uniform(5, 6.5), poisson=random_.uniform(0.2, 0.42))
     scene["obstacles"]["ball"] = {"sphere": {"radius": radius}, "frame": "hand",
                                   "pose": {"translate": [x, y, 0.015 + radius + 0.003]}}
+
     def off_motion(tip: Vec, duration: float) -> float | str:
         """By how much a motion that takes so long ends elsewhere, of how far it goes; or why it does not end."""
         slow = {**scene, "time": {"step": 1e-3 * duration, "duration": duration}, "analysis": "dynamic"}
