@@ -183,20 +183,14 @@ def bundle(random_: random.Random, scene: Scene, duration: float) -> None:
         scene["couplings"] = [{"tie": {"rod": "r0", "at": s, "other": "r1", "other_at": s, "along": ["y", "z"]}}]
 
 
-def inner_radius(body: dict[str, Any]) -> float:
-    """[m] of the largest ball within a body."""
-    if "box" in body:
-        return float(0.5 * min(body["box"]["size"]))
-    shape = next(body[kind] for kind in ("sphere", "capsule", "cylinder") if kind in body)
-    return float(min(shape["radius"], 0.5 * shape["length"]) if "cylinder" in body else shape["radius"])
-
-
 def extent(scene: Scene) -> float:
-    """[m] of the box about paths of rods and balls within bodies: the scene's size, or less."""
+    """[m] of the box about paths of rods and loose bodies: the scene's size, or less."""
     points = [p for rod in scene.get("rods", {}).values() for p in rod["path"]]
     for body in scene.get("bodies", {}).values():
         if "pose" in body:
-            points += [[x + side * inner_radius(body) for x in body["pose"]["translate"]] for side in (-1, 1)]
+            R = overlap.by_pose(body["pose"].get("rotate", [0, 0, 0]))
+            points += [[x + side * overlap.reach(body, along) for x, along in zip(body["pose"]["translate"], R)]
+                       for side in (-1, 1)]
     return math.dist(*([f(axis) for axis in zip(*points)] for f in (min, max))) if points else 0.0
 
 

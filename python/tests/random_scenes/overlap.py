@@ -36,17 +36,16 @@ def by_pose(rotate: list[float]) -> Matrix:
     return product(product(about((0, 0, 1), rotate[2]), about((0, 1, 0), rotate[1])), about((1, 0, 0), rotate[0]))
 
 
-def reach_down(body: dict[str, Any], R: Matrix) -> float:
-    """How far the body reaches below its centre."""
-    down = R[2]  # z of its own axes
+def reach(body: dict[str, Any], along: Vec) -> float:
+    """How far the body reaches from its centre along a direction, which is given in its axes."""
     if "sphere" in body:
         return float(body["sphere"]["radius"])
     if "box" in body:
-        return float(sum(0.5 * size * abs(z) for size, z in zip(body["box"]["size"], down)))
+        return float(sum(0.5 * size * abs(x) for size, x in zip(body["box"]["size"], along)))
     name = "capsule" if "capsule" in body else "cylinder"
     radius, half = body[name]["radius"], 0.5 * body[name]["length"]
-    round_ = radius if name == "capsule" else radius * math.sqrt(max(0.0, 1.0 - down[2] ** 2))
-    return float(half * abs(down[2]) + round_)
+    round_ = radius if name == "capsule" else radius * math.sqrt(max(0.0, 1.0 - along[2] ** 2))
+    return float(half * abs(along[2]) + round_)
 
 
 def core(body: dict[str, Any], p: Vec, R: Matrix) -> tuple[Vec, Vec, float] | None:
@@ -78,7 +77,7 @@ def deepest(scene: Scene, row: Row) -> tuple[float, str]:
         p = at(row, name)
         R = product(by_vector(at(row, f"{name}_turn")), by_pose(body.get("pose", {}).get("rotate", [0, 0, 0])))
         cores[name] = core(body, p, R)
-        depth = reach_down(body, R) - p[2]
+        depth = reach(body, R[2]) - p[2]
         if floor and depth > worst:
             worst, who = depth, f"{name} in the floor"
     held = [(name, own) for name, own in cores.items() if own]
