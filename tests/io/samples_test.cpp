@@ -27,7 +27,7 @@ class Samples : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path write(const std::string& text) {
-    const std::filesystem::path path = folder_ / "table.csv";
+    std::filesystem::path path = folder_ / "table.csv";
     std::ofstream(path, std::ios::binary) << text;
     return path;
   }
@@ -89,10 +89,13 @@ TEST_F(Samples, ComeFromColumnsOfAFile) {
 TEST_F(Samples, ComeFromFormulas) {
   const Scene scene = with_tip("{formula: [0.1, 0.02 * sin(2 * pi * t), 't < 0.5 ? 0 : 1e-2']}");
   const Track& track = std::get<Track>(scene.targets[0].at);
-  ASSERT_EQ(track.times.size(), static_cast<std::size_t>(std::lround(scene.time.duration / scene.time.step)) + 1);
+  ASSERT_EQ(track.times.size(), 4 * static_cast<std::size_t>(std::lround(scene.time.duration / scene.time.step)) + 1);
   for (std::size_t i = 0; i < track.times.size(); ++i) {
     const double t = track.times[i];
-    EXPECT_NEAR(t, static_cast<double>(i) * scene.time.step, 1e-12);
+    EXPECT_NEAR(t, 0.25 * static_cast<double>(i) * scene.time.step, 1e-12);
+    if (const std::size_t step = i / 4; 4 * step == i) {
+      EXPECT_EQ(t, static_cast<double>(step) * scene.time.step);
+    }
     EXPECT_LT((track.values[i] - Vec3(0.1, 0.02 * std::sin(2 * std::numbers::pi * t), t < 0.5 ? 0.0 : 0.01)).norm(),
               1e-15);
   }

@@ -199,6 +199,47 @@ TEST(StoppedRuns, thin_rod_struck) {
   }
 }
 
+// Soft rods side by side are pressed on each other at rest: what they feel of each other's motion is beyond the
+// tangent, and by itself that iteration does not contract. It went no further than one step.
+TEST(StoppedRuns, soft_bundle) {
+  for (const char* step : {"1 ms", "0.5 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("soft_bundle", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_EQ(run.recorded.summary.halved, 0);
+    EXPECT_NEAR(run.last("tip.z"), 6.696e-3, 0.001e-3);  // (6.6954, 6.6959, and 6.6963 in steps of 0.2 ms)
+  }
+}
+
+// A step of one linearisation whose contacts add energy is made again until it converges. It was only halved, and the
+// run stopped in the second step of the impact.
+TEST(StoppedRuns, linearised_steps_that_gain_energy_converge) {
+  const RecordedRun run = fault("rod_impact_gain", {"newton=1", "time.duration=0.09"});
+  ASSERT_TRUE(run.done()) << run.why();
+  EXPECT_EQ(run.recorded.summary.halved, 0);
+  const std::vector<double> kinetic = run.signal("energy.kinetic"), elastic = run.signal("energy.elastic"),
+                            weight = run.signal("energy.weight");
+  ASSERT_EQ(run.steps.size(), 46U);
+  for (std::size_t i = 1; i < run.steps.size(); ++i) {
+    EXPECT_EQ(run.steps[i].status, i < 45 ? "linearized" : "converged") << run.steps[i].time;
+  }
+  EXPECT_LT(kinetic[45] + elastic[45] + weight[45], kinetic[44] + elastic[44] + weight[44]);
+  EXPECT_GT(run.steps.back().newton, 2U);  // what the linearisation took is counted
+  EXPECT_LE(run.steps.back().residual, 1e-9);
+  EXPECT_LT(kinetic[44], 0.1 * kinetic[43]);  // the impact
+
+  // The same where the last evaluation of linearised steps is left out.
+  const Model& model = run.loaded.model;
+  Workspace whole = make_workspace(model), half = make_workspace(model);
+  State full = initial_state(model), motion = full;
+  for (int i = 0; i < 45; ++i) {
+    const StepReport report = advance(model, whole, full), other = advance(model, half, motion, {Evaluation::motion});
+    ASSERT_TRUE(accepted(report.status)) << report.detail;
+    EXPECT_EQ(other.status, report.status) << full.time;
+  }
+  EXPECT_LT((motion.rods[0].q - full.rods[0].q).norm(), 1e-7 * full.rods[0].q.norm());
+}
+
 // A tie that leaves one turn free stopped at 90 degrees of it.
 TEST(StoppedRuns, tie_free_turn) {
   for (const char* turn : {"200 deg", "-200 deg", "800 deg"}) {

@@ -79,14 +79,15 @@ Samples from_file(const At& at, std::size_t components) {
   return own;
 }
 
-/// The times of the scene's grid.
+/// The times of the scene's steps, and of quarters of them: what a formula does within a step is known then.
 std::vector<double> grid(const At& at) {
+  constexpr double kParts = 4.0;  // a power of two, so that every fourth time is that of a step to the bit
   const Time time = time_of_run(at);
   const double steps = std::ceil(time.duration / time.step - 1e-6);
   if (!(steps < static_cast<double>(kMostSamples)))
     at.refuse("needs too many values over the run's time", "take a longer `time.step` or a shorter duration");
   std::vector<double> times;
-  for (double i = 0.0; i <= steps; ++i) times.push_back(i * time.step);
+  for (double i = 0.0; i <= kParts * steps; ++i) times.push_back(i * (time.step / kParts));
   return times;
 }
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/sim/rod_rows.hpp"
+
 namespace sinew {
 
 namespace {
@@ -135,6 +137,54 @@ void clear(const Model& model, ContactsBeyond& beyond) {
   for (std::size_t i = 0; i < beyond.nodes.size(); ++i) beyond.nodes[i].setZero(3, model.solids[i].body.rest.cols());
   beyond.rods.resize(model.rods.size());
   for (std::size_t i = 0; i < beyond.rods.size(); ++i) beyond.rods[i].setZero(model.rods[i].rod.strain_coordinates());
+}
+
+namespace {
+
+/// Calls of_solid(body, E on its nodes) of each solid; then of_rest(values, their units) of each rod, of z, and of e.
+template <class Beyond, class OfSolid, class OfRest>
+void each_part(const Model& model, double force, Beyond& beyond, const OfSolid& of_solid, const OfRest& of_rest) {
+  for (std::size_t i = 0; i < beyond.nodes.size(); ++i) of_solid(model.solids[i].body, beyond.nodes[i]);
+  for (std::size_t i = 0; i < beyond.rods.size(); ++i)
+    of_rest(beyond.rods[i], force * strain_levers(model.rods[i].rod));
+  of_rest(beyond.z, force * model.arms);
+  of_rest(beyond.u, Eigen::VectorXd::Constant(beyond.u.size(), model.size));
+}
+
+}  // namespace
+
+void without_units(const Model& model, double force, const ContactsBeyond& beyond, Eigen::VectorXd& x) {
+  Eigen::Index size = 0, at = 0;
+  each_part(
+      model, force, beyond, [&](const solid::Body& body, const Eigen::Matrix3Xd&) { size += body.unknowns; },
+      [&](const Eigen::VectorXd& values, const Eigen::VectorXd&) { size += values.size(); });
+  x.resize(size);
+  Eigen::VectorXd unknowns;
+  each_part(
+      model, force, beyond,
+      [&](const solid::Body& body, const Eigen::Matrix3Xd& nodes) {
+        solid::at_unknowns(body, nodes, unknowns);
+        x.segment(at, unknowns.size()) = unknowns / force;
+        at += unknowns.size();
+      },
+      [&](const Eigen::VectorXd& values, const Eigen::VectorXd& units) {
+        x.segment(at, values.size()) = values.cwiseQuotient(units);
+        at += values.size();
+      });
+}
+
+void with_units(const Model& model, double force, const Eigen::VectorXd& x, ContactsBeyond& beyond) {
+  Eigen::Index at = 0;
+  each_part(
+      model, force, beyond,
+      [&](const solid::Body& body, Eigen::Matrix3Xd& nodes) {
+        solid::from_unknowns(body, force * x.segment(at, body.unknowns), nodes);
+        at += body.unknowns;
+      },
+      [&](Eigen::VectorXd& values, const Eigen::VectorXd& units) {
+        values = x.segment(at, values.size()).cwiseProduct(units);
+        at += values.size();
+      });
 }
 
 Vec3 contact_beyond_rows(const Touch& here, const Touch& there, const Vec3& moved) {

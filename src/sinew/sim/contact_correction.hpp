@@ -7,7 +7,9 @@
 //     u(x) + J dx + e and f obey both laws,       e = u(x + dx) - u(x) - J dx,
 //
 // where R is what contacts leave unbalanced, u their gaps and slips, and A_c what A has of them. All else is linear
-// then, and contacts are where they will be, whatever shapes they are of. It contracts by |A^-1 dE/dx|.
+// then, and contacts are where they will be, whatever shapes they are of. (E, e) -> dx -> (E, e) is a fixed-point
+// iteration. By itself it contracts by |A^-1 dE/dx|, which is above 1 where soft bodies press hard on each other, so it
+// is accelerated (solve/anderson).
 #pragma once
 
 #include "sinew/sim/contacts.hpp"
@@ -24,6 +26,11 @@ struct ContactsBeyond {
 };
 
 void clear(const Model& model, ContactsBeyond& beyond);
+
+/// E and e as one vector without units: E by `force` [N] and the levers of its unknowns, e by the scene's size, last.
+void without_units(const Model& model, double force, const ContactsBeyond& beyond, Eigen::VectorXd& x);
+/// The same back; `beyond` has the sizes.
+void with_units(const Model& model, double force, const Eigen::VectorXd& x, ContactsBeyond& beyond);
 
 /// Contacts at an iterate, or where an increment leads from it, and forces [N] there, in the world.
 struct ContactsAt {

@@ -366,7 +366,7 @@ void Linearization::follow(const std::vector<Eigen::VectorXd>& solids, const sol
   if (model.scene.newton.precision == linalg::Precision::float32) refine(solids, increment);
 }
 
-double Linearization::beyond_tangent(const Increment& increment, const ContactsBeyond& solved) {
+double Linearization::beyond_tangent(const Increment& increment) {
   const Clock clock(times_->contact);
   const StepContext& context = *context_;
   const Model& model = context.model;
@@ -396,53 +396,52 @@ double Linearization::beyond_tangent(const Increment& increment, const ContactsB
     beyond_.u.segment<3>(3 * i) =
         contact_beyond_rows(contacts_.touches[at], trial_room_.touches[at], moved.segment<3>(3 * i));
   }
-  double force = 0.0;
-  for (std::size_t i = 0; i < beyond_.nodes.size(); ++i) {
-    solid::at_unknowns(model.solids[i].body, beyond_.nodes[i] - solved.nodes[i], pushes_[i]);
-    if (pushes_[i].size() > 0) force = std::max(force, pushes_[i].cwiseAbs().maxCoeff());
-  }
-  for (std::size_t i = 0; i < beyond_.rods.size(); ++i) {
-    if (beyond_.rods[i].isZero(0.0) && solved.rods[i].isZero(0.0)) continue;
-    const Eigen::VectorXd off = beyond_.rods[i] - solved.rods[i];
-    force = std::max(force, (off.array() / strain_levers(model.rods[i].rod).array()).abs().maxCoeff());
-  }
-  if (model.unknowns > 0)
-    force = std::max(force, ((beyond_.z - solved.z).array() / model.arms.array()).abs().maxCoeff());
-  const double row = beyond_.u.size() > 0 ? (beyond_.u - solved.u).cwiseAbs().maxCoeff() : 0.0;
-  return force / scale_ + row / model.size;
+  without_units(model, scale_, beyond_, found_);
+  if (solved_.size() == 0) solved_.setZero(found_.size());
+  const Eigen::Index rows = beyond_.u.size(), forces = found_.size() - rows;
+  const Eigen::VectorXd off = found_ - solved_;
+  if (!off.allFinite()) return INFINITY;
+  return (forces > 0 ? off.head(forces).lpNorm<Eigen::Infinity>() : 0.0) +
+         (rows > 0 ? off.tail(rows).lpNorm<Eigen::Infinity>() : 0.0);
 }
 
 void Linearization::correct_contacts(double enough, Increment& increment) {
-  constexpr int kMostTurns = 3;
-  constexpr double kContracts = 0.5;
+  constexpr int kMostTurns = 6;
+  constexpr double kLost = 4.0;  // an accelerated turn that leaves so many times the least of all leads nowhere
   const Model& model = context_->model;
   const auto presses = [](const ContactChange::Force& own) { return !(own.from + own.more).isZero(0.0); };
-  if (!increment.reduced.ok ||
+  if (!increment.reduced.ok || !(scale_ > 0.0) ||
       std::none_of(increment.forces.contacts.begin(), increment.forces.contacts.end(), presses))
     return;
-  clear(model, solved_);
-  solved_.u.setZero(contact_forces_.moved().size());
-  double left = beyond_tangent(increment, solved_);
-  for (int turn = 0; turn < kMostTurns && left > enough; ++turn) {
-    before_ = increment;
-    std::swap(beyond_, solved_);
+  solved_.resize(0);
+  double least = beyond_tangent(increment), left = least;
+  if (!(least > enough) || std::isinf(least)) return;
+  acceleration_.begin();
+  best_ = increment;
+  bool last_is_best = true;
+  for (int turn = 0; turn < kMostTurns && least > enough && std::isfinite(left); ++turn) {
+    if (turn > 1 && left > kLost * least) break;
+    acceleration_.next(found_, solved_);
+    with_units(model, scale_, solved_, beyond_);
     solve::right_side(reduced_.problem, side_);
-    side_.r += solved_.z;
-    for (std::size_t i = 0; i < solved_.rods.size(); ++i) side_.chains[i] += solved_.rods[i];
+    side_.r += beyond_.z;
+    for (std::size_t i = 0; i < beyond_.rods.size(); ++i) side_.chains[i] += beyond_.rods[i];
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      solid::at_unknowns(model.solids[i].body, solved_.nodes[i], pushes_[i]);
+      solid::at_unknowns(model.solids[i].body, beyond_.nodes[i], pushes_[i]);
       pushes_[i] = -forces_[i].r - pushes_[i];
     }
     {
       const Clock clock(times_->solve);
       push(pushes_, side_);
-      follow(pushes_, side_, increment, {}, {}, &solved_.u);
+      follow(pushes_, side_, increment, {}, {}, &beyond_.u);
     }
-    const double last = std::exchange(left, increment.reduced.ok ? beyond_tangent(increment, solved_) : NAN);
-    if (left <= kContracts * last) continue;
-    increment = before_;
-    break;
+    left = increment.reduced.ok ? beyond_tangent(increment) : INFINITY;
+    last_is_best = left < least && trusted_fraction(*context_, increment) == 1.0;
+    if (!last_is_best) continue;
+    least = left;
+    best_ = increment;
   }
+  if (!last_is_best) std::swap(increment, best_);
 }
 
 void Linearization::refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment) {

@@ -10,6 +10,7 @@
 #include "sinew/sim/contact_forces.hpp"
 #include "sinew/sim/free_motion.hpp"
 #include "sinew/sim/reduced.hpp"
+#include "sinew/solve/anderson.hpp"
 
 namespace sinew {
 
@@ -98,7 +99,8 @@ class Linearization {
   /// The same for forces [N] on each volume's unknowns and another right side of the rest.
   void respond(const std::vector<Eigen::VectorXd>& solids, solve::RightSide& side, Increment& increment);
   /// Corrects an increment that was solved for here, with what contacts do beyond the tangent (sim/contact_correction),
-  /// as long as that contracts and more than `enough` of forces and rows would be left of it.
+  /// until no more than `enough` of forces and rows would be left of it, for six turns at most. Of all turns the one
+  /// counts that left least.
   void correct_contacts(double enough, Increment& increment);
   /// The reduced solution alone for another right side, volumes without forces.
   void couple(const solve::RightSide& side, solve::CoupledSolution& solution) { factor_.solve(side, solution); }
@@ -153,9 +155,9 @@ class Linearization {
   void follow(const std::vector<Eigen::VectorXd>& solids, const solve::RightSide& side, Increment& increment,
               const Steer& steer, std::optional<solve::CoupledFactor::Part> rough = {},
               const Eigen::VectorXd* beyond = nullptr);
-  /// E and e of an increment, in `beyond_`; by how much they differ from those that it was solved with, of the largest
-  /// force and of the scene's size.
-  double beyond_tangent(const Increment& increment, const ContactsBeyond& solved);
+  /// Finds E and e of an increment (`found_`); by how much they differ from those that it was solved with (`solved_`;
+  /// no entries: none), of the largest force and of the scene's size. Infinite where they are not finite.
+  double beyond_tangent(const Increment& increment);
   /// Corrects what was solved in single precision for what it left of the pushes, until nothing is left of them.
   void refine(const std::vector<Eigen::VectorXd>& solids, Increment& increment);
 
@@ -186,8 +188,10 @@ class Linearization {
   State trial_;  ///< where an increment leads, and contacts there
   ContactRoom trial_room_;
   std::vector<Vec3> forces_here_, forces_more_, forces_there_;
-  ContactsBeyond beyond_, solved_;
-  Increment before_;
+  ContactsBeyond beyond_;
+  Eigen::VectorXd solved_, found_;  ///< E and e without units
+  solve::AndersonAcceleration acceleration_{4};
+  Increment best_;
   std::vector<Eigen::VectorXd> left_;  ///< by a refinement, of which these are the rest and a part
   solve::RightSide rest_;
   Increment part_;

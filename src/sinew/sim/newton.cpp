@@ -328,7 +328,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     if (!increment.reduced.ok) return nothing_holds();
     if (!rules.fixed && !rules.inverse && !rules.across && !context.model.pairs.empty() &&
         trusted_fraction(context, increment) == 1.0)
-      here.correct_contacts(std::max(0.5 * context.model.scene.newton.tolerance, std::min(kCorrected, off * off)),
+      here.correct_contacts(std::max(0.25 * context.model.scene.newton.tolerance, std::min(kCorrected, off * off)),
                             increment);
     // (Of both before anything is made smallest: a difference of multipliers that nothing answers means nothing.)
     if (rules.across) change_along(at, memory, iterate, report.times);

@@ -123,6 +123,38 @@ Apart apart(const Model& model, const State& state, const State& other) {
   return most;
 }
 
+/// The same rules with as many iterations as it takes.
+NewtonRules converging(const Model& model, NewtonRules rules) {
+  rules.limit = model.scene.newton.limit;
+  rules.fixed = false;
+  return rules;
+}
+
+/// Makes the step of Memory::context. It begins where velocities lead and, where that leads nowhere, from its start.
+StepReport make_step(NewtonRules rules, Memory& memory) {
+  double alarm = alarm_distance(memory.context);
+  const auto from = [&](Guess guess) {
+    return look_until_found(memory, alarm, [&] {
+      const double spent = begin_step(memory, guess);
+      rules.on_trial = guess == Guess::moved_on && memory.here.contacts().clear > 0.0;
+      // What is prescribed stands in the context already.
+      StepReport report = newton([](double, StepContext&) {}, memory, rules, memory.iterate);
+      report.times.contact += spent;
+      return report;
+    });
+  };
+  // (A linearised step is one about its start. Commands that are looked for begin there, too.)
+  const bool moves_on = !rules.fixed && !rules.inverse && memory.context.rate > 0.0 && moves(memory.context.start);
+  StepReport report = from(moves_on ? Guess::moved_on : Guess::start);
+  if (rules.on_trial && !accepted(report.status)) {
+    const StepReport earlier = std::move(report);
+    alarm = memory.alarm;
+    report = from(Guess::start);
+    add_effort(earlier, report);
+  }
+  return report;
+}
+
 /// Makes the step of Memory::context, which Memory::iterate has made by linearisations, once more until it converges,
 /// with the same commands and in as many parts as that takes, eight at most: how far that ends beside it
 /// (`StepReport::off`); infinite where it does not end.
@@ -130,8 +162,7 @@ double off_converged(Memory& memory, NewtonRules rules) {
   constexpr int kMostParts = 8;
   StepContext& context = memory.context;
   const Model& model = context.model;
-  rules.limit = model.scene.newton.limit;
-  rules.fixed = false;
+  rules = converging(model, rules);
   rules.inverse = nullptr;
   Iterate linearised = memory.iterate;
   const Command command = context.command, before = command_of(model, context.start);
@@ -171,31 +202,17 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
   {
     const Lent lent(state, memory.context.start);
     memory.context.set(command, h);
-    double alarm = alarm_distance(memory.context);
-    NewtonRules own_rules = rules;
-    const auto from = [&](Guess guess) {
-      return look_until_found(memory, alarm, [&] {
-        const double spent = begin_step(memory, guess);
-        own_rules.on_trial = guess == Guess::moved_on && memory.here.contacts().clear > 0.0;
-        // What is prescribed stands in the context already.
-        StepReport own = newton([](double, StepContext&) {}, memory, own_rules, memory.iterate);
-        own.times.contact += spent;
-        return own;
-      });
-    };
-    // (A linearised step is one about its start. Commands that are looked for begin there, too.)
-    const bool moves_on = !rules.fixed && !rules.inverse && memory.context.rate > 0.0 && moves(memory.context.start);
-    report = from(moves_on ? Guess::moved_on : Guess::start);
-    if (own_rules.on_trial && !accepted(report.status)) {
-      const StepReport earlier = std::move(report);
-      alarm = memory.alarm;
-      report = from(Guess::start);
-      add_effort(earlier, report);
+    report = make_step(rules, memory);
+    if (rules.fixed && !rules.inverse && report.status == Status::max_iterations) {  // its contacts add energy
+      StepReport linearised = std::move(report);
+      report = make_step(converging(memory.context.model, rules), memory);
+      add_effort(linearised, report);
+      if (!accepted(report.status)) report.detail += "; as one linearisation, " + linearised.detail;
     }
     // (Before the state moves: from then on nothing asks for memory.)
     if (rules.inverse && accepted(report.status))
       report.aim = rules.inverse->aim(memory.context.model, memory.iterate.state);
-    if (rules.fixed && rules.compared && accepted(report.status) && leaves_much(memory.context.model, report)) {
+    if (report.status == Status::linearized && rules.compared && leaves_much(memory.context.model, report)) {
       report.off = report.aim.off = off_converged(memory, rules);
       warn_of_linearisation(memory.context.model, memory.iterate.state.time, report);
     }

@@ -1,0 +1,31 @@
+#include "sinew/solve/anderson.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+namespace sinew::solve {
+
+void AndersonAcceleration::next(const Eigen::VectorXd& image, Eigen::VectorXd& x) {
+  const Eigen::VectorXd residual = image - x;
+  if (known_ > 0) {
+    images_.resize(image.size(), depth_);
+    residuals_.resize(image.size(), depth_);
+    const int column = (known_ - 1) % depth_;
+    images_.col(column) = image - last_image_;
+    residuals_.col(column) = residual - last_residual_;
+  }
+  const int columns = std::min(known_, depth_);
+  x = image;
+  if (columns > 0) {
+    constexpr double kDependent = 1e-10;  // of the largest: columns with less beside the others say nothing new
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor;
+    factor.setThreshold(kDependent);
+    factor.compute(residuals_.leftCols(columns));
+    x -= images_.leftCols(columns) * factor.solve(residual);
+  }
+  last_image_ = image;
+  last_residual_ = residual;
+  ++known_;
+}
+
+}  // namespace sinew::solve
