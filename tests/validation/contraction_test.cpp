@@ -32,7 +32,7 @@ Model pressed_beam(const Press& own) {
 }
 
 // Of order 1.5 at least, whatever constant goes with it; but contacts are corrected to a quarter of the tolerance, no
-// further: half of it with what that leaves out.
+// further, and what their correction does not see may leave as much again.
 TEST(Contraction, of_a_ball_on_a_beam_at_rest_is_quadratic_slow) {
   const auto at_most = [](double before) { return 10.0 * std::pow(before, 1.5); };
   const double corrected = 5e-10;

@@ -339,26 +339,6 @@ TEST(Faults, path_limit_slow) {
   EXPECT_THAT(run.failure().detail, HasSubstr("73.3 % of the load in 300"));
 }
 
-// One linearisation for a step of one second: 30 % off, without a word.
-TEST(Faults, long_step) {
-  const RecordedRun run = fault("long_step");
-  ASSERT_TRUE(run.done()) << run.why();
-  const Warning* told = run.warning("linearisation_off");
-  ASSERT_TRUE(told);
-  EXPECT_THAT(told->remedy, HasSubstr("leave `newton: 1` out"));
-  const Warning* off = run.warning("linearised_step_off");
-  ASSERT_TRUE(off);
-  EXPECT_NEAR(off->value, 0.3, 0.05);
-  const RecordedRun converged = fault("long_step", {"newton={}"});
-  EXPECT_EQ(converged.warning("linearisation_off"), nullptr);
-  EXPECT_EQ(converged.warning("linearised_step_off"), nullptr);
-  // Where the converged step is found in parts alone.
-  const RecordedRun stiffer = fault(
-      "long_step", {"solids.finger.material.young=1.889 MPa", "actuators.pull.displacement.values=[0, 5.614 mm]"});
-  ASSERT_TRUE(stiffer.warning("linearised_step_off"));
-  EXPECT_NEAR(stiffer.warning("linearised_step_off")->value, 0.25, 0.05);
-}
-
 // Normals of chords, and of faces beside an edge: axial force +84 %.
 TEST(Faults, contact_sleeve) {
   const RecordedRun run = fault("contact_sleeve");

@@ -15,7 +15,7 @@ namespace {
 
 using enum Need;
 
-constexpr std::size_t kMostSamples = 1'000'000, kLongestFormula = 2000;
+constexpr std::size_t kMostSteps = 1'000'000, kLongestFormula = 2000;
 
 struct FileTable {
   std::string file, time = "time";
@@ -84,7 +84,7 @@ std::vector<double> grid(const At& at) {
   constexpr double kParts = 4.0;  // a power of two, so that every fourth time is that of a step to the bit
   const Time time = time_of_run(at);
   const double steps = std::ceil(time.duration / time.step - 1e-6);
-  if (!(steps < static_cast<double>(kMostSamples)))
+  if (!(steps < static_cast<double>(kMostSteps)))
     at.refuse("needs too many values over the run's time", "take a longer `time.step` or a shorter duration");
   std::vector<double> times;
   for (double i = 0.0; i <= kParts * steps; ++i) times.push_back(i * (time.step / kParts));

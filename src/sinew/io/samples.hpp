@@ -13,7 +13,7 @@ struct Samples {
 };
 
 /// Of a map with the key `file` (a CSV table; with `column`, or `columns` where there are several components, and
-/// `time`) or `formula` (of t [s], taken at the times of the scene's grid); nothing of others.
+/// `time`) or `formula` (of t [s], taken at the times of the scene's steps and at quarters of them); nothing of others.
 std::optional<Samples> samples(const At& at, std::size_t components);
 
 /// What such a map may be.

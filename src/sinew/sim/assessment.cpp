@@ -293,7 +293,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
     warnings.add({.code = "unstable",
                   .where = "",
                   .message = "the equilibrium is unstable, a real body would have buckled",
-                  .remedy = "a small side load shows where it goes; of a shape without a flaw, no step does"});
+                  .remedy = "a small side load shows where it goes; shorter steps do not if the shape is perfect"});
   }
   if (model.scene.analysis == Analysis::modal) return;  // (what a mode's picture does is no state)
   if (const int folded = count_folded(model, next); folded > 0) {

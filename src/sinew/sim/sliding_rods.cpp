@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "sinew/error/digits.hpp"
@@ -76,6 +77,32 @@ struct Swing {
   int order = 0;
 };
 
+/// The interval between two points that is pushed beyond what it bears straight and whose sections follow that least.
+struct Waves {
+  double part = 0.0;    ///< of half a wave that a section is long, two of order 1 for one of order 0
+  double half = 0.0;    ///< [m] half a wave
+  double push = 0.0;    ///< [N]
+  double length = 0.0;  ///< [m] of a section there
+};
+
+/// Between two points, pinned, a rod of bending stiffness B bears N = pi^2 B / spacing^2 straight. Beyond that it bends
+/// in waves, half of one pi sqrt(B / N) long.
+Waves waves_between(const Model& model, const State& state, int number, double middle, double spacing) {
+  const rod::Rod& rod = model.rods[number].rod;
+  const double push = -internal_wrench(model, state, number, middle)[3];
+  if (!(push > kNegligibleForce * buckling_load(rod))) return {};
+  const rod::Section& section = section_at(rod, middle);
+  const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, middle);
+  Waves worst;
+  for (const int strain : {1, 2}) {
+    const int order = bending_order(section, strain);
+    const double half = std::numbers::pi * std::sqrt(stiffness(strain, strain) / push),
+                 part = std::ldexp(section.length(), -order) / half;
+    if (order >= 0 && half < spacing && part > worst.part) worst = {part, half, push, section.length()};
+  }
+  return worst;
+}
+
 }  // namespace
 
 double SlideResolution::equivalent() const { return std::ldexp(sections, order); }
@@ -118,6 +145,7 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
     double pressed = 0.0, against = 0.0, friction = 0.0, rubs_most = 0.0, closest = INFINITY;
     int rubbing = -1;
     Swing most;
+    Waves coarsest;
     Vec3 before = Vec3::Zero();
     int last = -1;
     for (const int k : model.rods[number].slides) {
@@ -140,6 +168,8 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
       const double from = std::max(0.0, state.points[one].s), middle = 0.5 * (from + s);
       const rod::Section& section = section_at(rod, middle);
       const double sections = spacing / section.length();
+      if (const Waves here = waves_between(model, state, number, middle, spacing); here.part > coarsest.part)
+        coarsest = here;
       for (const int strain : {1, 2}) {
         const int order = bending_order(section, strain);
         if (order < 0 || std::ldexp(sections, order) >= kFewSections) continue;
@@ -152,6 +182,19 @@ std::vector<Warning> assess_sliding_rods(const Model& model, const State& state)
                      swing = ripple_of(equivalent) * change;
         if (swing > most.force) most = {swing, sections, order};
       }
+    }
+    if (coarsest.part > kLongInWaves) {
+      warnings.push_back(
+          {.code = "coarse_under_push",
+           .where = "rods." + model.rods[number].name,
+           .message = "it is pushed with " + three_digits(coarsest.push) +
+                      " N, more than it bears straight between two points, and bends in waves of " +
+                      three_digits(2e3 * coarsest.half) + " mm, which sections of " +
+                      three_digits(1e3 * coarsest.length) + " mm do not follow: it seems stiffer than it is",
+           .remedy = "take sections of " + three_digits(1e3 * coarsest.length * kLongInWaves / coarsest.part) +
+                     " mm or shorter, or pull it",
+           .value = coarsest.part,
+           .limit = kLongInWaves});
     }
     if (last < 0 || (most.force == 0.0 && friction == 0.0)) continue;
     const double base = internal_wrench(model, state, number, 0.0).tail<3>().norm(),

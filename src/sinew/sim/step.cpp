@@ -207,7 +207,7 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
       StepReport linearised = std::move(report);
       report = make_step(converging(memory.context.model, rules), memory);
       add_effort(linearised, report);
-      if (!accepted(report.status)) report.detail += "; as one linearisation, " + linearised.detail;
+      if (!accepted(report.status)) report.detail += "; with the linearisations asked for, " + linearised.detail;
     }
     // (Before the state moves: from then on nothing asks for memory.)
     if (rules.inverse && accepted(report.status))

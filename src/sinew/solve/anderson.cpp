@@ -17,11 +17,15 @@ void AndersonAcceleration::next(const Eigen::VectorXd& image, Eigen::VectorXd& x
   const int columns = std::min(known_, depth_);
   x = image;
   if (columns > 0) {
-    constexpr double kDependent = 1e-10;  // of the largest: columns with less beside the others say nothing new
+    // Differences shrink from iterate to iterate: each is scaled to length 1, so that the latest count like the others.
+    // What is left of one beside the others, and is below this part of it, says nothing new.
+    constexpr double kDependent = 1e-10;
+    Eigen::VectorXd lengths = residuals_.leftCols(columns).colwise().norm();
+    for (double& length : lengths) length = length > 0.0 ? length : 1.0;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor;
     factor.setThreshold(kDependent);
-    factor.compute(residuals_.leftCols(columns));
-    x -= images_.leftCols(columns) * factor.solve(residual);
+    factor.compute(residuals_.leftCols(columns) * lengths.cwiseInverse().asDiagonal());
+    x -= images_.leftCols(columns) * factor.solve(residual).cwiseQuotient(lengths);
   }
   last_image_ = image;
   last_residual_ = residual;

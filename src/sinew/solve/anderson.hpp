@@ -3,8 +3,8 @@
 //
 //     x_{k+1} = G(x_k) - sum_j gamma_j (G(x_{j+1}) - G(x_j)),    gamma = argmin |f_k - sum_j gamma_j (f_{j+1} - f_j)|.
 //
-// Where G is linear this does what GMRES does on x - G(x) = 0, as long as no difference is dropped: it ends after as
-// many images, and one, as G has distinct eigenvalues, and G need not contract.
+// Where G is linear and diagonalisable this does what GMRES does on x - G(x) = 0, as long as no difference is dropped:
+// it ends after as many images, and one, as G has distinct eigenvalues, and G need not contract.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ namespace sinew::solve {
 
 class AndersonAcceleration {
  public:
-  /// Keeps `depth` differences, of the depth + 1 latest iterates.
+  /// Keeps `depth` differences, one at least, of the depth + 1 latest iterates.
   explicit AndersonAcceleration(int depth) : depth_(depth) {}
   /// Forgets all iterates.
   void begin() { known_ = 0; }
