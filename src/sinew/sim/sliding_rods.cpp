@@ -90,7 +90,7 @@ struct Waves {
 Waves waves_between(const Model& model, const State& state, int number, double middle, double spacing) {
   const rod::Rod& rod = model.rods[number].rod;
   const double push = -internal_wrench(model, state, number, middle)[3];
-  if (!(push > kNegligibleForce * buckling_load(rod))) return {};
+  if (!(push > 0.0)) return {};
   const rod::Section& section = section_at(rod, middle);
   const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, middle);
   Waves worst;
