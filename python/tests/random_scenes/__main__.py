@@ -28,19 +28,25 @@ def main() -> int:
     use_program(arguments.program)
     ends: Counter[tuple[str, str]] = Counter()
     wrong = 0
+    mean_steps: list[float] = []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         cases = [make(arguments.kind, number) for number in range(arguments.first, arguments.first + arguments.count)]
         for verdict in pool.map(lambda case: run(case, arguments.program), cases):
             case = verdict.case
             ends[case.kind, verdict.end.split(":")[0]] += 1
-            if verdict.complaints or (arguments.verbose and verdict.end != "done"):
-                print(f"{case.kind} {case.number}: {verdict.end}; {'; '.join(verdict.complaints)}", flush=True)
+            mean_steps.append(verdict.mean_step)
+            slow = f" (at {verdict.mean_step:.2g} of its step)" if verdict.mean_step < 0.1 else ""
+            if verdict.complaints or (arguments.verbose and (slow or verdict.end != "done")):
+                print(f"{case.kind} {case.number}{slow}: {verdict.end}; {'; '.join(verdict.complaints)}", flush=True)
             if verdict.complaints:
                 wrong += 1
                 if arguments.keep:
                     run(case, arguments.program, keep=arguments.keep / f"{case.kind}_{case.number}")
     for (kind, end), count in sorted(ends.items()):
         print(f"{kind:16} {end:10} {count}")
+    for part in (0.1, 0.01):
+        print(f"{sum(step < part for step in mean_steps)} of {arguments.count} run at less than {part:g} of their step,"
+              " on average")
     print(f"{wrong} of {arguments.count} wrong")
     return 1 if wrong else 0
 

@@ -132,6 +132,14 @@ class Verdict:
     warnings: list[str] = field(default_factory=list)
     report: Any = None
 
+    @property
+    def mean_step(self) -> float:
+        """Of the steps that were accepted, in steps of the scene; 1 where time does not go on by steps."""
+        if self.case.scene.get("analysis", "dynamic") not in ("dynamic", "quasi_static") or len(self.rows) < 2:
+            return 1.0
+        step: float = self.case.scene["time"]["step"]
+        return (self.rows[-1]["time"] - self.rows[0]["time"]) / (len(self.rows) - 1) / step
+
 
 _program = [str(ROOT / "build/release/sinew")]
 
