@@ -211,6 +211,21 @@ TEST(StoppedRuns, soft_bundle) {
   }
 }
 
+// At rest the first linearisation of a soft rod under its weight bends a section by more than a radian; halving the
+// step changes nothing of that, and the run ended before its first step. It is made until it converges, the others are
+// linearised there.
+TEST(StoppedRuns, linearised_steps_that_go_too_far_converge) {
+  const RecordedRun run = fault("linearised_sag"), converged = fault("linearised_sag", {"newton={limit: 25}"});
+  ASSERT_TRUE(run.done()) << run.why();
+  ASSERT_TRUE(converged.done()) << converged.why();
+  ASSERT_EQ(run.steps.size(), 6U);
+  for (std::size_t i = 1; i < run.steps.size(); ++i)
+    EXPECT_EQ(run.steps[i].status, i == 1 ? "converged" : "linearized") << run.steps[i].time;
+  EXPECT_NEAR(run.last("tip.z"), converged.last("tip.z"), 1e-10);
+  EXPECT_NEAR(run.last("tip.x"), converged.last("tip.x"), 1e-10);
+  EXPECT_LT(run.last("tip.z"), -0.09);  // of 0.1 m: it hangs
+}
+
 // A step of `newton: n` whose contacts add energy is made again until it converges. It was only halved, and the
 // run stopped in the second step of the impact.
 TEST(StoppedRuns, linearised_steps_that_gain_energy_converge) {

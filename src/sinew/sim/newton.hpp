@@ -106,6 +106,13 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
 
 /// How the scene wants its steps made, or whoever makes them.
 NewtonRules step_rules(const Model& model, const Effort& effort);
+/// Whether a step of so many linearisations failed, and might go through if it converges.
+inline bool may_converge(const NewtonRules& rules, const StepReport& report) {
+  return rules.fixed && !accepted(report.status) && report.status != Status::inconsistent;
+}
+/// What such a step cost, and why it failed where the same step, made until it converges, fails as well. (Its status
+/// is that of the linearisations then, whose remedy is to leave them out, unless the other one knows better.)
+void add_linearised(const StepReport& linearised, StepReport& report);
 
 /// Repeats a step as long as its second look finds contacts that were not looked for, each time within a longer
 /// distance, or something that was taken to fly past and has not, or some that press where nothing is, without them; a

@@ -187,6 +187,13 @@ StepReport advance(const Model& model, Workspace& workspace, State& state, Effor
   {
     const Clock clock(seconds);
     report = try_to_advance(model, workspace, state, effort, told);
+    // Linearisations that lead nowhere, in parts neither, are no reason against a step that converges.
+    if (may_converge(step_rules(model, effort), report)) {
+      const StepReport linearised = std::move(report);
+      effort.converged = true;
+      report = try_to_advance(model, workspace, state, effort, told);
+      add_linearised(linearised, report);
+    }
   }
   report.times.step = seconds;
   return report;

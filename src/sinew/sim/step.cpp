@@ -197,6 +197,14 @@ double off_converged(Memory& memory, NewtonRules rules) {
 
 }  // namespace
 
+void add_linearised(const StepReport& linearised, StepReport& report) {
+  add_effort(linearised, report);
+  if (accepted(report.status)) return;
+  report.detail =
+      linearised.detail + (linearised.detail.empty() ? "" : "; ") + "repeated until it converges: " + report.detail;
+  if (report.status == Status::max_iterations) report.status = linearised.status;
+}
+
 StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& command, double h, State& state) {
   StepReport report;
   {
@@ -204,10 +212,9 @@ StepReport step_by(const NewtonRules& rules, Memory& memory, const Command& comm
     memory.context.set(command, h);
     report = make_step(rules, memory);
     if (rules.fixed && !rules.inverse && report.status == Status::max_iterations) {  // its contacts add energy
-      StepReport linearised = std::move(report);
+      const StepReport linearised = std::move(report);
       report = make_step(converging(memory.context.model, rules), memory);
-      add_effort(linearised, report);
-      if (!accepted(report.status)) report.detail += "; with the linearisations asked for, " + linearised.detail;
+      add_linearised(linearised, report);
     }
     // (Before the state moves: from then on nothing asks for memory.)
     if (rules.inverse && accepted(report.status))
