@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sinew/sim/step.hpp"
@@ -118,6 +119,23 @@ TEST(Advance, a_linearisation_beyond_trust_is_refused_and_named) {
   ASSERT_EQ(trace.end, RunEnd::stopped);
   EXPECT_EQ(trace.failure.status, Status::diverged);
   EXPECT_THAT(trace.failure.detail, testing::StartsWith("solids.block, a node moved by "));
+}
+
+TEST(Advance, statics_that_fail_are_not_repeated_for_newton_n) {
+  std::array<int, 2> iterations{};
+  for (int n : {0, 1}) {
+    Scene scene = once_linearised_block(1e5, 0.02);
+    scene.analysis = Analysis::statics;
+    scene.newton.iterations = n;
+    const Model model = build(scene, test::read_block);
+    Workspace workspace = make_workspace(model);
+    State state = initial_state(model);
+    StepReport report = advance(model, workspace, state);
+    while (accepted(report.status) && state.grid < grid_steps(model.scene)) report = advance(model, workspace, state);
+    ASSERT_FALSE(accepted(report.status));
+    iterations[n] = report.newton;
+  }
+  EXPECT_EQ(iterations[1], iterations[0]);
 }
 
 TEST(Advance, a_linearisation_beyond_trust_may_go_in_halves) {

@@ -187,8 +187,10 @@ StepReport advance(const Model& model, Workspace& workspace, State& state, Effor
   {
     const Clock clock(seconds);
     report = try_to_advance(model, workspace, state, effort, told);
-    // Linearisations that lead nowhere, in parts neither, are no reason against a step that converges.
-    if (may_converge(step_rules(model, effort), report)) {
+    // Where linearisations lead nowhere, not even in parts of the step, one that converges may still go. (Statics and
+    // modes converge anyway.)
+    const bool steps = model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static;
+    if (steps && may_converge(step_rules(model, effort), report)) {
       const StepReport linearised = std::move(report);
       effort.converged = true;
       report = try_to_advance(model, workspace, state, effort, told);
