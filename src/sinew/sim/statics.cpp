@@ -194,10 +194,10 @@ struct Between {
   }
 };
 
-/// [J] What is set free with the gravity of t, beyond what friction may take at the end; the elastic energy, and what
-/// weights lose under all of gravity.
+/// [J] What is set free with the gravity of t, beyond what friction may take at the end, and that; the work done, with
+/// that of weights; the elastic energy, and what weights lose under all of gravity.
 struct SetFree {
-  double free = 0.0, elastic = 0.0, fallen = 0.0;
+  double free = 0.0, rubbed = 0.0, done = 0.0, elastic = 0.0, fallen = 0.0;
 };
 SetFree set_free(const Between& own, double t) {
   const EnergyBalance before = energy_balance(own.model, own.from), after = energy_balance(own.model, own.to);
@@ -208,8 +208,8 @@ SetFree set_free(const Between& own, double t) {
     rubbed += std::abs(own.to.points[point].friction * (own.to.points[point].s - own.from.points[point].s));
   const double held = after.elastic + after.kinetic - before.elastic - before.kinetic;
   const double fallen = before.weight - after.weight;
-  return {own.to.energies.work - own.from.energies.work + own.gravity(t) * fallen - held - rubbed,
-          std::max(before.elastic, after.elastic), fallen};
+  const double done = own.to.energies.work - own.from.energies.work + own.gravity(t) * fallen;
+  return {done - held - rubbed, rubbed, done, std::max(before.elastic, after.elastic), fallen};
 }
 constexpr double kFree = 1e-3;  ///< of the elastic energy: what steps of a load leave undecided
 
@@ -227,10 +227,13 @@ double put_in_by_contacts(const Between& own) {
 bool jumped(const Between& own) {
   constexpr double kNear = 0.01;    // of the scene's size
   constexpr double kBeyond = 0.03;  // of the elastic energy: the work of a long, curved way is not known better
+  // Of it and of the work: up, nothing takes a body, and shorter parts know their work better.
+  constexpr double kUp = 0.003, kUpOfWork = 0.02;
   if (moved_most(own.model, own.from, own.to).far <= kNear * own.model.size) return false;
   const SetFree set = set_free(own, 0.5 * (own.t_from + own.t_to));  // (trapezium, as loads that grow)
   const double from_nowhere = -set.free - put_in_by_contacts(own);
-  return std::max(set.free, from_nowhere) > kBeyond * set.elastic;
+  return std::max(set.free, from_nowhere) > kBeyond * set.elastic ||
+         from_nowhere - set.rubbed > std::max(kUp * set.elastic, kUpOfWork * std::abs(set.done));
 }
 
 /// Warning `snapped` where a body that was let go has set energy free. It was so with the loads of the end, which do
