@@ -1,4 +1,6 @@
 // Rods at the ends of their range: nearly straight, coiled, hair-thin, stocky, finely cut.
+#include "sinew/sim/strained_rods.hpp"
+#include "support/recorded_run.hpp"
 #include "validation/shooting.hpp"
 
 namespace sinew::test {
@@ -115,6 +117,45 @@ TEST(ExtremeRod, three_hundred_sections_agree_with_shooting) {
   Scene scene = straight_rod(1.0, 300, given(stiffness), kAll, 0, 4);
   add_load(scene, force);
   EXPECT_LT((solve(scene).tip() - shoot_cantilever(1.0, force, stiffness, true).p).norm(), 1e-5);
+}
+
+/// The force along the rod of the scene, of which E A is 78.54 N, and the warnings of the run.
+RecordedRun pushed(double force, const std::string& analysis) {
+  return run_file(std::filesystem::path(SINEW_SOURCE_DIR) / "tests/validation/faults/rod_crushed.yaml",
+                  {"loads.push.force=[" + std::to_string(force) + ", 0, 0]", "analysis=" + analysis});
+}
+
+TEST(ExtremeRod, no_rod_is_inside_out_without_a_word) {
+  const double EA = 1e6 * pi * 25e-6;
+  for (const std::string analysis : {"dynamic", "quasi_static"}) {
+    const RecordedRun run = pushed(-100.0, analysis);
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_LT(run.last("tip.x"), 0.0);  // it is where its law takes it, which is no place for a rod
+    const Warning* told = run.warning("rod_crushed", "rods.a");
+    ASSERT_TRUE(told) << analysis;
+    const bool rests = analysis == "quasi_static";
+    EXPECT_NEAR(told->value, 100.0 / EA, rests ? 1e-9 : 1e-4);
+    const double crushed = 0.5 * 0.8 * EA / 100.0;  // [s] of loads that grow for half a second
+    EXPECT_GE(told->time, crushed);
+    EXPECT_LE(told->time, crushed + (rests ? 0.01 : 0.01 + 0.05));  // a step later; in motion, and by its damping
+  }
+  EXPECT_FALSE(pushed(-0.75 * EA, "quasi_static").warning("rod_crushed"));
+  EXPECT_TRUE(pushed(-0.85 * EA, "quasi_static").warning("rod_crushed"));
+  EXPECT_FALSE(pushed(4.9 * EA, "quasi_static").warning("rod_overstretched"));
+  EXPECT_TRUE(pushed(5.1 * EA, "quasi_static").warning("rod_overstretched"));
+}
+
+TEST(ExtremeRod, stretch_is_found_where_it_is_most) {
+  Scene scene = straight_rod(1.0, 2, given({1.0, 1.0, 1.0, 10.0, 1.0, 1.0}), kAll, 1);
+  const Model model = build(scene, read_block);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(model.rods[0].rod.coordinates());
+  EXPECT_EQ(stretch_of(model.rods[0].rod, q).least, 1.0);
+  const std::vector<rod::Mode>& modes = model.rods[0].rod.sections[1].modes;
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    if (modes[i].strain == 3 && modes[i].degree == 1)
+      q[model.rods[0].rod.first[1] + static_cast<Eigen::Index>(i)] = 0.5;
+  EXPECT_NEAR(stretch_of(model.rods[0].rod, q).least, 0.5, 1e-6);
+  EXPECT_NEAR(stretch_of(model.rods[0].rod, q).most, 1.5, 1e-6);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/sliding_rods.hpp"
 #include "sinew/sim/step_ends.hpp"
+#include "sinew/sim/strained_rods.hpp"
 #include "sinew/sim/touched_rods.hpp"
 #include "sinew/sim/unbalanced.hpp"
 #include "sinew/sim/work.hpp"
@@ -296,6 +297,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
                   .remedy = "a small side load shows where it goes; shorter steps do not if the shape is perfect"});
   }
   if (model.scene.analysis == Analysis::modal) return;  // (what a mode's picture does is no state)
+  for (Warning& own : assess_strained_rods(model, next)) warnings.add(std::move(own));
   if (const int folded = count_folded(model, next); folded > 0) {
     warnings.add(
         {.code = "elements_inverted",
