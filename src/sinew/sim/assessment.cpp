@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/error/digits.hpp"
+#include "sinew/sim/coarse_rods.hpp"
 #include "sinew/sim/contact_places.hpp"
 #include "sinew/sim/held_contact.hpp"
 #include "sinew/sim/internal.hpp"
@@ -297,6 +298,7 @@ void assess(const StepContext& context, const Linearization& here, const State& 
                   .remedy = "a small side load shows where it goes; shorter steps do not if the shape is perfect"});
   }
   if (model.scene.analysis == Analysis::modal) return;  // (what a mode's picture does is no state)
+  for (Warning& own : assess_coarse_rods(model, next)) warnings.add(std::move(own));
   for (Warning& own : assess_strained_rods(model, next)) warnings.add(std::move(own));
   if (const int folded = count_folded(model, next); folded > 0) {
     warnings.add(

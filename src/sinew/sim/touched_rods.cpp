@@ -1,26 +1,17 @@
 #include "sinew/sim/touched_rods.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "sinew/error/digits.hpp"
-#include "sinew/sim/internal.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/sim/stresses_along.hpp"
 
 namespace sinew {
 
 namespace {
 
-constexpr double kOff = 0.1;      ///< part of the force at the rod's base
-constexpr double kAtRest = 1e-2;  ///< part of its elastic energy: less kinetic energy than that
-
-/// Gauss points of [0, 1], exact for a line times the polynomials of any section.
-struct GaussPoint {
-  double t, weight;
-};
-constexpr std::array<GaussPoint, 3> kGauss = {
-    {{0.1127016653792583, 5.0 / 18.0}, {0.5, 8.0 / 18.0}, {0.8872983346207417, 5.0 / 18.0}}};
+constexpr double kOff = 0.1;  ///< part of the force at the rod's base
 
 /// Integrals between two neighbouring places at which the stresses are known, and between which they are linear, of
 /// what strains miss.
@@ -31,11 +22,11 @@ struct Missed {
 Missed missed_between(const rod::Rod& rod, const RodState& state, const rod::Section& section, Eigen::Index column) {
   const Eigen::MatrixXd& internal = state.internal;
   const double begin = internal(0, column), end = internal(0, column + 1);
-  const auto from = internal.block<6, 1>(7, column), to = internal.block<6, 1>(1, column + 1);
+  const rod::Vec6 from = stress_between(internal, column, 0.0), to = stress_between(internal, column, 1.0);
   Missed missed;
-  for (const GaussPoint& point : kGauss) {
+  for (const GaussPoint& point : kGaussOfThree) {
     const double s = begin + point.t * (end - begin);
-    const rod::Vec6 stress = from + point.t * (to - from), strain = rod::deviation(rod, state.q, s);
+    const rod::Vec6 stress = stress_between(internal, column, point.t), strain = rod::deviation(rod, state.q, s);
     const rod::Mat6 stiffness = rod::stiffness_at(rod.profile, s);
     for (const rod::Mode& mode : section.modes) {
       if (mode.degree > 0) continue;  // each strain once
@@ -92,7 +83,7 @@ std::vector<Warning> assess_touched_rods(const Model& model, const State& state)
     if (!is_pressed(state, {Collider::Kind::rod, i})) continue;
     const rod::Rod& rod = model.rods[i].rod;
     // (An impact bends a rod by its inertia, and what its base feels at that moment is not quoted.)
-    if (kinetic_energy(rod, state.rods[i]) > kAtRest * elastic_energy(rod, state.rods[i])) continue;
+    if (!almost_rests(rod, state.rods[i])) continue;
     const double base = internal_wrench(model, state, i, 0.0).tail<3>().norm(),
                  negligible = kNegligibleForce * buckling_load(rod);
     if (base < negligible) continue;

@@ -27,7 +27,7 @@ namespace sinew {
 
 /// [N] By how much the force along a rod is off, at most, between its base and any other place: over the sections in
 /// which contacts press on it.
-double configurational_error(const Model& model, const State& state, int rod);
+double configurational_error(const Model& model, const State& state, int number);
 
 /// Warnings `touched_force_off` of rods that almost rest. Time and number of steps are left to the caller.
 std::vector<Warning> assess_touched_rods(const Model& model, const State& state);
