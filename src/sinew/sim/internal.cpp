@@ -82,7 +82,7 @@ double elastic_energy(const rod::Rod& rod, const RodState& state) {
   double energy = 0.0;
   for (int k = 0; k < rod.count(); ++k) {
     const auto q = rod.of_section(state.q, k);
-    energy += 0.5 * q.dot(rod.sections[static_cast<std::size_t>(k)].stiffness * q);
+    energy += 0.5 * q.dot(rod.sections[static_cast<std::size_t>(k)].stiffness.lazyProduct(q));
   }
   return energy;
 }
