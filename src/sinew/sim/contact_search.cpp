@@ -324,10 +324,12 @@ class Search {
   }
 
   /// Whether no edge of a surface that leaves one of its points does so towards `d`, so that the point is nearest to
-  /// what is there. True of points of shapes.
+  /// what is there, or nearly so: a rod that all but lies along an edge comes to lie on both of its ends within the
+  /// step, and bends from its chords, by which it is looked for. True of points of shapes.
   bool out_of_corner(const ContactSide& point, const Vec3& d) const {
+    constexpr double kNearly = 0.1;  // the sine of an angle
     const Surface* surface = surfaces_.of(point.on);
-    return !surface || steepest_edge(*surface, point.nodes[0], d) <= 1e-9;
+    return !surface || steepest_edge(*surface, point.nodes[0], d) <= kNearly;
   }
 
   /// Whether a part can press on a point; both in axes that R turns into the world. The side of what slides over a

@@ -51,8 +51,10 @@ WeightRange weight_range(const Moment& now, const ContactSide& side, const Simpl
           std::min(1.0 + kBeyond, (now.rods[side.on.number].rod->length() - begin) / length)};
 }
 
-constexpr double kLiesAlong = 0.3;    ///< of -d . x'' to x'^2, beyond which a rod lies along what it touches
-constexpr double kSideBySide = 1e-3;  ///< of the determinant to that of lines across each other
+constexpr double kLiesAlong = 0.3;  ///< of -d . x'' to x'^2, beyond which a rod lies along what it touches
+/// Of the determinant to that of lines across each other, where they are side by side all along. (A rod that bends away
+/// from a straight edge by much less than a thousandth is still nearest to it at one place.)
+constexpr double kSideBySide = 1e-9;
 
 /// Where two parts are nearest within these ranges, one of them a piece of a rod, from where their chords are. With d =
 /// x_a(s) - x_b(t), s and t the second weights, Newton's method for min |d|^2 / 2:
