@@ -174,6 +174,26 @@ TEST(StoppedRuns, arm_under_ring) {
   }
 }
 
+// A step corrected for what contacts do beyond their tangent ended where it had begun, with a force that was not
+// balanced, in every iteration: at rest at 0.35 s, and in the damped motion that was to go on from there.
+TEST(StoppedRuns, stuck_on_ring) {
+  for (const char* step : {"10 ms", "50 ms"}) {
+    SCOPED_TRACE(step);
+    const RecordedRun run = fault("stuck_on_ring", {std::string("time.step=") + step});
+    ASSERT_TRUE(run.done()) << run.why();
+    EXPECT_TRUE(run.warning("snapped"));
+  }
+}
+
+// Let fall on the ring at once, it is moved down by damped motion. That ended where it had come 0.03 mm into an edge:
+// each step that moved it out of there was refused, since contact had added energy.
+TEST(StoppedRuns, let_fall_on_ring) {
+  const RecordedRun run =
+      fault("stuck_on_ring",
+            {"gravity=[0, 0, -9.81]", "frames.base.motion.translate=[[0, 0, 0], [0, 0, 0]]", "time.duration=20 ms"});
+  ASSERT_TRUE(run.done()) << run.why();
+}
+
 // The corner of a cube is pressed into a soft beam: it slid to and fro between both sides of a valley until the run
 // stopped, `passed_through`.
 TEST(StoppedRuns, corner_in_valley) {

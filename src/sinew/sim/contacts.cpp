@@ -56,6 +56,8 @@ constexpr double kSoughtWithin = 0.1;
 constexpr double kStillWithin = 0.1;
 /// What moves on with its velocities stays clear of others but for this part of a thickness.
 constexpr double kClear = 0.1;
+/// Contacts that a fall would close take part from the start, of those within this part of the model's size.
+constexpr double kMostFall = 0.02;
 /// Of such a pair so many of the nearest contacts take part, closed or not.
 constexpr std::size_t kSoughtContacts = 40;
 
@@ -362,6 +364,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   room.facings.clear();
   room.playing.clear();
   room.clear = 1.0;
+  const double closes = std::min(fall, kMostFall * context.model.size);
   std::vector<std::vector<std::pair<double, int>>> sought(context.model.pairs.size());
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
@@ -372,7 +375,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     const double into = -now.opens * context.h, until = std::max(0.0, now.gap + kClear * room.thin[own.pair]);
     if (into > until) room.clear = std::min(room.clear, until / into);
     const auto number = static_cast<int>(i);
-    if (!own.force.isZero() || now.gap + now.approach * context.h < fall) room.playing.push_back(number);
+    if (!own.force.isZero() || now.gap + now.approach * context.h < closes) room.playing.push_back(number);
     if (context.model.pairs[own.pair].sought) sought[own.pair].emplace_back(now.gap, number);
   }
   for (auto& near : sought) {

@@ -179,7 +179,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     finish_contacts(context, here.contacts(), iterate.state);
     judge(context, rules.fixed, iterate.state, report);
     if (rules.fixed) contradicts(std::max(0.5 * report.violation, 1e-4 * context.model.size));
-    if (!context.model.pairs.empty() && !lifts && accepted(report.status)) {
+    if (!context.model.pairs.empty() && !lifts && !rules.settles && accepted(report.status)) {
       if (std::string gained = contact_adds_energy(context, iterate.state); !gained.empty()) {
         report.status = Status::max_iterations;
         report.detail = std::move(gained);
@@ -217,7 +217,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   int steady = 0;      // iterations that have made what is off smaller, one after the other
   int idle = 0;        // iterations since what is off was made smaller than it had ever been
   constexpr double kContracts = 0.8, kHelps = 0.9;
-  constexpr int kIdle = 8;
+  constexpr int kIdle = 8, kStuck = 2;
   constexpr double kCorrected = 1e-4;  // contacts are corrected to this at least, and as Newton contracts
   constexpr int kSteady = 4, kPatience = 3, kTrial = 2;
   for (;; ++report.newton) {
@@ -326,7 +326,9 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
     report.redundant |= increment.reduced.redundant;
     if (here.stalled()) return fail(Status::singular, std::string("solids") + single);
     if (!increment.reduced.ok) return nothing_holds();
-    if (!rules.fixed && !rules.inverse && !rules.across && !context.model.pairs.empty() &&
+    // (The corrected step may end where it began, a minimum of what is off that is not 0; Newton's leaves it.)
+    const bool corrects = idle < kStuck || idle % 2 == 1;
+    if (corrects && !rules.fixed && !rules.inverse && !rules.across && !context.model.pairs.empty() &&
         trusted_fraction(context, increment) == 1.0)
       here.correct_contacts(std::max(0.25 * context.model.scene.newton.tolerance, std::min(kCorrected, off * off)),
                             increment);

@@ -35,6 +35,7 @@ struct NewtonRules {
   /// It begins where velocities have led, and is given up once an iteration after the second helps by less than a
   /// fifth.
   bool on_trial = false;
+  bool settles = false;  ///< on its way to an equilibrium: contacts that move apart what overlaps may add energy
   Evaluation evaluation = Evaluation::full;  ///< of fixed rounds
   bool compared = false;                     ///< with a converged step, where they leave much
   Inverse* inverse = nullptr;                ///< commands are looked for, too: it has begun

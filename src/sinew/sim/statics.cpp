@@ -135,7 +135,8 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
     };
     at(t, memory.context);
     NewtonRules rules{limit, false, Linearization::Wanted::descent};
-    rules.evaluation = rate > 0.0 ? Evaluation::motion : Evaluation::full;
+    rules.settles = rate > 0.0;
+    rules.evaluation = rules.settles ? Evaluation::motion : Evaluation::full;
     StepReport report = look_until_found(memory, alarm_distance(memory.context), [&] {
       at(t, memory.context);
       begin(memory, reached.at.state);
