@@ -123,6 +123,14 @@ class Case:
     judge: Judge = lambda rows, report: []
 
 
+def seconds(value: float | str) -> float:
+    """A time of a scene: a number, or one with its unit."""
+    if not isinstance(value, str):
+        return value
+    number, unit = value.split()
+    return float(number) * {"s": 1.0, "ms": 1e-3, "us": 1e-6}[unit]
+
+
 @dataclass
 class Verdict:
     case: Case
@@ -137,8 +145,8 @@ class Verdict:
         """Of the steps that were accepted, in steps of the scene; 1 where time does not go on by steps."""
         if self.case.scene.get("analysis", "dynamic") not in ("dynamic", "quasi_static") or len(self.rows) < 2:
             return 1.0
-        step: float = self.case.scene["time"]["step"]
-        return (self.rows[-1]["time"] - self.rows[0]["time"]) / (len(self.rows) - 1) / step
+        made = (self.rows[-1]["time"] - self.rows[0]["time"]) / (len(self.rows) - 1)
+        return made / seconds(self.case.scene["time"]["step"])
 
 
 _program = [str(ROOT / "build/release/sinew")]
