@@ -364,7 +364,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   room.facings.clear();
   room.playing.clear();
   room.clear = 1.0;
-  const double closes = std::min(fall, kMostFall * context.model.size);
+  const double reached = std::min(fall, kMostFall * context.model.size);  // [m] by a fall
   std::vector<std::vector<std::pair<double, int>>> sought(context.model.pairs.size());
   for (std::size_t i = 0; i < iterate.contacts.size(); ++i) {
     const ContactState& own = iterate.contacts[i];
@@ -375,7 +375,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
     const double into = -now.opens * context.h, until = std::max(0.0, now.gap + kClear * room.thin[own.pair]);
     if (into > until) room.clear = std::min(room.clear, until / into);
     const auto number = static_cast<int>(i);
-    if (!own.force.isZero() || now.gap + now.approach * context.h < closes) room.playing.push_back(number);
+    if (!own.force.isZero() || now.gap + now.approach * context.h < reached) room.playing.push_back(number);
     if (context.model.pairs[own.pair].sought) sought[own.pair].emplace_back(now.gap, number);
   }
   for (auto& near : sought) {
