@@ -143,7 +143,7 @@ def chambers() -> Body:
 def tendon_arm() -> Body:
     scene = example("tendon_arm")
     scene["actuators"] = {"side": {"rod": "arm", "tendon": {"distance": "20 mm", "angle": "0 deg"}}}
-    return Body(scene, "arm", (0.5, 0.03, 0.0), (0, 1, 0), (1, 0, 0), 0.01, 0.1,
+    return Body(scene, "arm", (0.5, 0.0, 0.03), (0, 0, 1), (1, 0, 0), 0.01, 0.1,
                 actuator("side", "displacement", 8e-3), actuator("side", "tension", 8.0))
 
 
