@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -11,6 +13,7 @@
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/sliding_rods.hpp"
 #include "sinew/solid/mesh_order.hpp"
+#include "sinew/solid/mesh_pieces.hpp"
 #include "sinew/solid/mesh_summary.hpp"
 
 namespace sinew::app {
@@ -185,6 +188,27 @@ void suggest_scale(double diagonal) {
   if (diagonal > 10.0) fmt::print("  a diagonal above 10 suggests millimetres: use `scale: 0.001` in the scene\n");
 }
 
+/// What a scene warns of, or refuses.
+void describe_pieces(const solid::Mesh& mesh) {
+  const solid::Pieces pieces = solid::find_pieces(mesh.cells, mesh.nodes.cols());
+  if (pieces.count > 1) fmt::print("  {} pieces that share no nodes\n", pieces.count);
+  for (int piece = 0; piece < pieces.count && pieces.count > 1 && piece < 12; ++piece) {
+    Eigen::AlignedBox3d box;
+    for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node)
+      if (pieces.of_node[static_cast<std::size_t>(node)] == piece) box.extend(mesh.nodes.col(node));
+    fmt::print("    {} cells from [{:.6g}, {:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}]\n",
+               std::count(pieces.of_cell.begin(), pieces.of_cell.end(), piece), box.min().x(), box.min().y(),
+               box.min().z(), box.max().x(), box.max().y(), box.max().z());
+  }
+  if (const auto same = solid::coincident_nodes(mesh.nodes, mesh.cells); !same.empty())
+    fmt::print("  {} nodes are at the place of another and not tied to it, the first {} and {}\n", same.size(),
+               same.front()[0], same.front()[1]);
+  if (const auto hanging = solid::hanging_nodes(mesh.nodes, mesh.cells, pieces); !hanging.empty())
+    fmt::print("  {} nodes lie on faces of cells that do not have them, the first {}: a scene refuses this mesh\n",
+               hanging.size(), hanging.front());
+  if (mesh.turned > 0) fmt::print("  {} elements, all of their kind, were inside out and are turned\n", mesh.turned);
+}
+
 int describe_surface(const std::filesystem::path& path, const solid::Mesh& mesh) {
   const contact::Mesh surface = contact::make_mesh(mesh.nodes, mesh.faces);
   const Vec3 lower = mesh.nodes.rowwise().minCoeff(), upper = mesh.nodes.rowwise().maxCoeff();
@@ -232,6 +256,7 @@ int describe_mesh(const std::filesystem::path& path) {
   if (const auto pair = solid::mismatched_edges(mesh.cells))
     fmt::print("  cells {} and {} have different nodes in the middle of an edge: a scene refuses this mesh\n",
                pair->front(), pair->back());
+  describe_pieces(mesh);
   suggest_scale(s.diagonal);
   return kDone;
 }

@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
       ->excludes(set)
       ->excludes(replay);
   run->add_flag("--force", options.force, "Replace the results of an earlier run in the folder");
-  run->add_flag("-q,--quiet", options.quiet, "No progress");
+  run->add_flag("-q,--quiet", options.quiet, "No progress and no list of files");
   run->add_flag("--strict", options.strict, "End with exit code 4 where anything was warned of");
   run->add_flag("--profile", options.profile, "Show at the end where the time went, stage by stage");
   run->add_option("--threads", options.threads, "Threads that share a step; the results are the same for any number")

@@ -75,7 +75,7 @@ int run_and_record(const runs::LoadedScene& loaded, const State& start, const st
   const std::vector<Warning> warnings = runs::all_warnings(model, summary, recording.steps);
   std::for_each(warnings.begin() + static_cast<std::ptrdiff_t>(before.size()), warnings.end(), warn);
   progress.finish(fmt::format("{}, {} steps", when(model, last), recording.steps.size() - 1));
-  if (!options.quiet && !model.effectors.empty()) print_targets(model, last, recording);
+  if (!model.effectors.empty()) print_targets(model, last, recording);
   const std::vector<std::string> files = runs::write_views(folder, loaded, recording, summary);
   if (end == RunEnd::stopped) {
     fmt::print(stderr, "Stopped at {}: {}{}\n    {}\n", when(model, last), to_string(summary.failure.status),

@@ -764,12 +764,12 @@ class Tie(Part):
     """A point of a rod that is held.
 
     rod: The rod whose point is held; for example "cable".
-    at: The abscissa of that point [m]; its tip if left out; for example "50 mm".
+    at: The abscissa of that point [m]; `tip`, as if left out, is its tip; for example "50 mm".
     frame: The frame that holds it; the ground if there is no frame, solid, body or other; for example "hand".
     solid: The solid that holds it; for example "finger".
     body: The rigid body that holds it; for example "disc".
     other: The other rod that holds it; for example "spine".
-    other_at: The abscissa on the other rod [m]; its tip if left out; for example "50 mm".
+    other_at: The abscissa on the other rod [m]; `tip`, as if left out, is its tip; for example "50 mm".
     along: The axes of the holder along which it is held; for example ["x", "y", "z"]; if left out ["x", "y", "z"].
     about: The axes of the holder about which it is held; for example ["x", "y", "z"].
     reach: How far outside the solid's mesh the point may lie [m]; for example "2 mm".
@@ -778,12 +778,12 @@ class Tie(Part):
     _kind: ClassVar[str] = "tie"
 
     rod: str
-    at: Quantity | None = None
+    at: Literal["tip"] | Quantity | None = None
     frame: str | None = None
     solid: str | None = None
     body: str | None = None
     other: str | None = None
-    other_at: Quantity | None = None
+    other_at: Literal["tip"] | Quantity | None = None
     along: Sequence[Literal["x", "y", "z"]] | None = None
     about: Sequence[Literal["x", "y", "z"]] | None = None
     reach: Quantity | None = None
@@ -913,6 +913,7 @@ class Limits(Part):
     """What it can do, to which the inverse keeps.
 
     force: The least and most force [N]; of what pulls the least is 0 if left out; for example ["0.5 N", "20 N"].
+    tension: The least and most tension of a tendon [N], another word for its force; for example ["0.5 N", "20 N"].
     torque: The least and most torque of what turns [N m]; for example ["-20 mN m", "20 mN m"].
     displacement: The least and most displacement [m]; for example ["0 mm", "30 mm"].
     angle: The least and most angle of what turns [rad]; for example ["-90 deg", "90 deg"].
@@ -922,6 +923,7 @@ class Limits(Part):
     """
 
     force: Vector | Span | Tree | None = field(default=None, metadata={"kinds": ("Span",)})
+    tension: Vector | Span | Tree | None = field(default=None, metadata={"kinds": ("Span",)})
     torque: Vector | Span | Tree | None = field(default=None, metadata={"kinds": ("Span",)})
     displacement: Vector | Span | Tree | None = field(default=None, metadata={"kinds": ("Span",)})
     angle: Vector | Span | Tree | None = field(default=None, metadata={"kinds": ("Span",)})
@@ -947,7 +949,7 @@ class RodLoad(Part):
     """A load.
 
     rod: The rod that is loaded; for example "cable".
-    at: The abscissa of a point load [m]; the tip if left out; for example "50 mm".
+    at: The abscissa of a point load [m]; `tip`, as if left out, is the tip; for example "50 mm".
     from_: The abscissa where a distributed load begins [m]; for example 0.
     to: The abscissa where a distributed load ends [m]; for example "100 mm".
     force: The force [N], of a distributed load per length [N/m]; for example [0, 0, "-1 N"].
@@ -958,7 +960,7 @@ class RodLoad(Part):
     """
 
     rod: str
-    at: Quantity | None = None
+    at: Literal["tip"] | Quantity | None = None
     from_: Quantity | None = None
     to: Quantity | None = None
     force: Vector | None = None
@@ -1011,7 +1013,7 @@ class Output(Part):
     body: The rigid body that is recorded: its centre of mass, or the force on it; for example "cube".
     between: Two objects, of which is recorded how they touch; for example ["cube", "floor"].
     rod: The rod whose point is recorded; for example "cable".
-    at: The abscissa of the point on the rod [m]; for example "100 mm".
+    at: The abscissa of the point on the rod [m]; `tip`, as if left out, is its tip; for example "100 mm".
     quantity: What is recorded there: of a solid `position`, `displacement`, `orientation`, `strain`, `stress` or
         `reaction`; of a rod `position`, `orientation`, `strain`, `force`, `moment` or `stress`; of a body `position`,
         `orientation` or `force`. An orientation is how it has turned since the start, a reaction the force on what is
@@ -1027,7 +1029,7 @@ class Output(Part):
     body: str | None = None
     between: Sequence[str] | None = None
     rod: str | None = None
-    at: Quantity | None = None
+    at: Literal["tip"] | Quantity | None = None
     quantity: Literal["position", "displacement", "orientation", "strain", "force", "moment", "stress", "reaction"] | None = None
     region: Region | Tree | None = field(default=None, metadata={"kinds": ("Region",)})
 

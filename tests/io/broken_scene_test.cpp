@@ -127,7 +127,7 @@ const std::vector<Broken> kBroken = {
     {"end: {rod: cable", "end: {rod: able", 55, "outputs.end.rod", "able", "is not a rod", "did you mean `cable`?"},
     {"  end: {rod", "  pull: {rod", 55, "outputs.pull", "", "is the name of an actuator", "rename"},
     {"  thread:", "  block:", 41, "rods.block", "", "is the name of a solid", "rename"},
-    {", at: 100 mm", "", 55, "outputs.end.rod", "", "is given without `at`", "add `at`"},
+    {"at: 100 mm", "at: top", 55, "outputs.end.at", "top", "must be a length", "in m"},
     {"end: {rod: cable, at: 100 mm}", "end: {}", 55, "outputs.end.solid", "", "exactly one of solid, rod", "finger"},
     {"point: [100 mm, 5 mm, 7 mm], ", "", 54, "outputs.tip.solid", "", "is given without `point`", "add `point`"},
     // Structure.

@@ -284,6 +284,7 @@ actuators:
   turn: {rod: cable, angle: inverse, limits: {torque: {most: 2 mN m}, angle: [-90 deg, 90 deg], turning_speed: 90 deg/s}}
   other: {rod: cable, force: inverse, limits: {force: {least: 0 N, most: 5 N}}}
   twist: {rod: cable, torque: inverse, limits: {torque: {least: 0, most: 1 N m}, angle: {least: 0, most: 1 rad}}}
+  wire: {rod: cable, tendon: {distance: 1 mm}, tension: inverse, limits: {tension: {least: 0, most: 3 N}}}
 outputs:
   tip: {solid: finger, point: [100 mm, 5 mm, 7 mm]}
   nail: {solid: finger, point: [100 mm, 5 mm, 7 mm], quantity: orientation}

@@ -288,6 +288,11 @@ TEST(CheckMesh, WantsACell) {
   EXPECT_THAT(fault.rule, HasSubstr("at least one tetrahedron with 4 or 10 nodes"));
 }
 
+TEST(MeshFile, OfOtherProgramsIsRefusedByItsName) {
+  EXPECT_THAT(fault_of("$NOD\n1\n1 0 0 0\n$ENDNOD\n").rule, HasSubstr("Gmsh file of version 1"));
+  EXPECT_THAT(fault_of("(0 \"Created by a mesher\")\n(2 3)\n").rule, HasSubstr("ANSYS Fluent"));
+}
+
 TEST(CheckMesh, WantsNodeNumbersInRange) {
   for (const int node : {-1, 5}) {
     solid::Mesh mesh = two_tetrahedra();

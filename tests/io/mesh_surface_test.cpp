@@ -75,6 +75,12 @@ TEST(SurfaceFile, IsTheSameInEveryFormat) {
   expect_tetrahedron(parse_mesh(kObj, "part.obj"));
 }
 
+TEST(SurfaceFile, WhatStandsBehindTheLastTriangleIsARemark) {
+  expect_tetrahedron(parse_mesh(text_stl() + "made by a program, version 3\nfacet count 4\n", "part.stl"));
+  expect_tetrahedron(parse_mesh(binary_stl() + std::string(7, '\n') + "COLOR=red", "part.STL"));
+  expect_tetrahedron(parse_mesh(std::string(kObj) + "group the part\n", "part.obj"));
+}
+
 TEST(SurfaceFile, PolygonsBecomeTrianglesAndThoseWithoutAreaGo) {
   const solid::Mesh mesh =
       parse_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 2 0\nv 0 1 0\nv -0 -0 0\nf 1 2 3 4 5\nf 1 6 2\n", "p.obj");

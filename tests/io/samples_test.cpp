@@ -123,7 +123,7 @@ TEST_F(Samples, SayWhatIsWrong) {
   EXPECT_THAT(refused("{file: table.csv, column: x}"), HasSubstr("`columns`"));
   EXPECT_THAT(refused("{formula: [1, 2]}"), HasSubstr("3 of them, not 2"));
   EXPECT_THAT(refused("{formula: [0, sin(t, 0]}"),
-              testing::AllOf(HasSubstr("scene.yaml:25"), HasSubstr("targets.tip.at.formula"), HasSubstr("not")));
+              testing::AllOf(HasSubstr("scene.yaml:26"), HasSubstr("targets.tip.at.formula"), HasSubstr("not")));
   EXPECT_THAT(refused("{formula: [0, 2 * u, 0]}"), HasSubstr("is not a formula of t"));
   EXPECT_THAT(refused("{formula: [0, 1 / t, 0]}"), HasSubstr("has no finite value at t = 0 s"));
 }

@@ -122,28 +122,33 @@ struct Refused {
   std::size_t first = 0;     ///< among all cells
 };
 
-template <class Accept>
-Refused refused(const solid::Mesh& mesh, solid::Kind kind, Accept accept) {
+constexpr double smallest_part = 1e-12;
+
+/// Linear tetrahedra: their volume says it all. Curved and twisted elements can have a positive volume and yet be
+/// folded in a corner. False for NaN.
+bool is_sound(const solid::Mesh& mesh, const solid::Cell& cell) {
+  const double volume = solid::volume(mesh.nodes, cell);
+  if (!std::isfinite(volume)) return false;
+  if (cell.kind != solid::Kind::tet4) return volume > 0.0 && solid::smallest_jacobian(mesh.nodes, cell) > smallest_part;
+  const double edge = longest_edge(mesh.nodes, cell);
+  return volume > smallest_part * edge * edge * edge;
+}
+
+Refused refused(const solid::Mesh& mesh, solid::Kind kind) {
   Refused found;
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
     const solid::Cell& cell = mesh.cells[i];
     if (cell.kind != kind) continue;
     ++found.of;
-    if (accept(cell)) continue;
+    if (is_sound(mesh, cell)) continue;
     if (found.count++ == 0) found.first = i;
-    if (accept(mirrored(cell))) ++found.inverted;
+    if (is_sound(mesh, mirrored(cell))) ++found.inverted;
   }
   return found;
 }
 
-constexpr double smallest_part = 1e-12;
-
-/// Linear tetrahedra: their volume says it all.
 void check_volumes(const solid::Mesh& mesh, const std::string& file) {
-  const Refused bad = refused(mesh, solid::Kind::tet4, [&mesh](const solid::Cell& cell) {
-    const double volume = solid::volume(mesh.nodes, cell), edge = longest_edge(mesh.nodes, cell);
-    return volume > smallest_part * edge * edge * edge && std::isfinite(volume);  // also false for NaN
-  });
+  const Refused bad = refused(mesh, solid::Kind::tet4);
   if (bad.count == 0) return;
   fail(file,
        fmt::format("volume {:.6g} of tetrahedron {} (0-based, counting used cells only)",
@@ -157,13 +162,8 @@ void check_volumes(const solid::Mesh& mesh, const std::string& file) {
            : "reorder the nodes of tetrahedra of negative volume, remove or remesh those of zero volume");
 }
 
-/// Curved and twisted elements can have a positive volume and yet be folded in a corner.
 void check_folds(const solid::Mesh& mesh, solid::Kind kind, const std::string& file) {
-  const Refused bad = refused(mesh, kind, [&mesh](const solid::Cell& cell) {
-    const double volume = solid::volume(mesh.nodes, cell);
-    return volume > 0.0 && std::isfinite(volume) &&
-           solid::smallest_jacobian(mesh.nodes, cell) > smallest_part;  // also false for NaN
-  });
+  const Refused bad = refused(mesh, kind);
   if (bad.count == 0) return;
   const char* remedy =
       kind == solid::Kind::hex8
@@ -182,9 +182,39 @@ void check_folds(const solid::Mesh& mesh, solid::Kind kind, const std::string& f
                               : remedy);
 }
 
+/// Cells of a kind that are all the wrong way round, and would be sound if mirrored, are.
+void turn_inverted(solid::Mesh& mesh) {
+  for (const solid::Kind kind : {solid::Kind::tet4, solid::Kind::tet10, solid::Kind::hex8}) {
+    const auto first = std::find_if(mesh.cells.begin(), mesh.cells.end(),
+                                    [kind](const solid::Cell& cell) { return cell.kind == kind; });
+    if (first == mesh.cells.end() || is_sound(mesh, *first)) continue;
+    const Refused bad = refused(mesh, kind);
+    if (bad.inverted < bad.of) continue;
+    for (solid::Cell& cell : mesh.cells)
+      if (cell.kind == kind) cell = mirrored(cell);
+    mesh.turned += static_cast<int>(bad.of);
+  }
+}
+
+void check_content(const solid::Mesh& mesh, const std::string& file) {
+  if (mesh.cells.empty()) {
+    fail(file, list(mesh), "the mesh must have at least one tetrahedron with 4 or 10 nodes or hexahedron with 8 nodes",
+         "mesh the volume, not only its surface (in Gmsh: Mesh 3D), with tetrahedra of order 1 or 2, or hexahedra of "
+         "order 1");
+  }
+  check_coordinates(mesh, file);
+  check_nodes(mesh, file);
+}
+
+bool has_extension(const std::string& name, std::string_view extension) {
+  return equal_ignoring_case(std::filesystem::path(name).extension().string(), extension);
+}
+
 /// Nothing if it is no surface.
 std::optional<solid::Mesh> parse_surface(std::string_view text, std::string_view first, const std::string& name) {
-  if (is_binary_stl(text)) return parse_binary_stl(text, name);
+  const std::size_t size = binary_stl_size(text);
+  if (size > 0 && (size == text.size() || has_extension(name, ".stl")))
+    return parse_binary_stl(text.substr(0, size), name);
   if (equal_ignoring_case(first, "solid")) return parse_text_stl(text, name);
   if (is_obj(first) && !text.starts_with("# vtk")) return parse_obj(text, name);
   return std::nullopt;
@@ -210,9 +240,15 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
     mesh = parse_legacy_vtk(text, name);
   } else if (first.starts_with("<")) {
     mesh = parse_vtu(bytes, name);
+  } else if (first == "$NOD") {
+    fail(name, in_quotes(first), "is the start of a Gmsh file of version 1, which is not read",
+         "save it again: `gmsh -save -format msh41 in.msh -o out.msh`");
   } else if (first.starts_with("$")) {
     mesh = parse_gmsh(text, name);
-  } else if (equal_ignoring_case(std::filesystem::path(name).extension().string(), ".stl")) {
+  } else if (first.starts_with("(")) {
+    fail(name, in_quotes(first), "is the start of a mesh of ANSYS Fluent, which is not read",
+         "export it as Abaqus input (.inp) or VTK, or convert it, for example with meshio");
+  } else if (has_extension(name, ".stl")) {
     fail(name, fmt::format("{} bytes", bytes.size()),
          "is neither a text STL file nor as long as a binary one is, 84 bytes and 50 for each triangle",
          "the file is cut short: export the part again");
@@ -221,18 +257,14 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
          "must begin with \"# vtk DataFile Version\", \"<VTKFile\" or \"$MeshFormat\", or be an STL or OBJ file",
          formats);
   }
+  check_content(mesh, name);
+  turn_inverted(mesh);
   check_mesh(mesh, name);
   return mesh;
 }
 
 void check_mesh(const solid::Mesh& mesh, const std::string& file) {
-  if (mesh.cells.empty()) {
-    fail(file, list(mesh), "the mesh must have at least one tetrahedron with 4 or 10 nodes or hexahedron with 8 nodes",
-         "mesh the volume, not only its surface (in Gmsh: Mesh 3D), with tetrahedra of order 1 or 2, or hexahedra of "
-         "order 1");
-  }
-  check_coordinates(mesh, file);
-  check_nodes(mesh, file);
+  check_content(mesh, file);
   check_volumes(mesh, file);
   check_folds(mesh, solid::Kind::tet10, file);
   check_folds(mesh, solid::Kind::hex8, file);

@@ -14,7 +14,9 @@ solid::Mesh parse_vtu(std::string_view bytes, const std::string& file);
 solid::Mesh parse_gmsh(std::string_view bytes, const std::string& file);
 
 // Surfaces have no word of their own to begin with.
-bool is_binary_stl(std::string_view bytes);
+/// How many bytes a binary STL file has by the number of triangles it tells; 0 if these are fewer, so it is none. Some
+/// programs write more behind it.
+std::size_t binary_stl_size(std::string_view bytes);
 bool is_obj(std::string_view first_word);
 solid::Mesh parse_binary_stl(std::string_view bytes, const std::string& file);
 solid::Mesh parse_text_stl(std::string_view bytes, const std::string& file);

@@ -127,18 +127,19 @@ void read_obj_face(ByteCursor& cursor, const std::vector<int>& points, Surface& 
 
 /// Lines of an OBJ file that say nothing about its polygons: normals, texture, names, lines, remarks.
 bool passed_over(std::string_view word) {
-  static constexpr std::array<std::string_view, 10> others = {"vn", "vt",     "vp",     "o", "g",
+  static constexpr std::array<std::string_view, 11> others = {"vn", "vt",     "vp",     "o", "g", "group",
                                                               "s",  "mtllib", "usemtl", "l", "p"};
   return word.starts_with("#") || std::find(others.begin(), others.end(), word) != others.end();
 }
 
 }  // namespace
 
-bool is_binary_stl(std::string_view bytes) {
-  if (bytes.size() < kHeader + 4) return false;
+std::size_t binary_stl_size(std::string_view bytes) {
+  if (bytes.size() < kHeader + 4) return 0;
   ByteCursor cursor(bytes.substr(kHeader, 4), "");
   const auto count = static_cast<std::size_t>(cursor.integer(NumberType::u32, {.text = false}, ""));
-  return count > 0 && bytes.size() == kHeader + 4 + kFacet * count;
+  const std::size_t size = kHeader + 4 + kFacet * count;
+  return count > 0 && bytes.size() >= size ? size : 0;
 }
 
 solid::Mesh parse_binary_stl(std::string_view bytes, const std::string& file) {
@@ -159,9 +160,13 @@ solid::Mesh parse_binary_stl(std::string_view bytes, const std::string& file) {
 solid::Mesh parse_text_stl(std::string_view bytes, const std::string& file) {
   ByteCursor cursor(bytes, file);
   Surface surface;
+  bool ended = false;  // what stands between two solids, or behind the last one, is a remark
   while (!cursor.done()) {
     const std::string_view word = cursor.word("a facet");
     if (equal_ignoring_case(word, "solid") || equal_ignoring_case(word, "endsolid")) {
+      ended = equal_ignoring_case(word, "endsolid");
+      cursor.line();
+    } else if (ended) {
       cursor.line();
     } else if (equal_ignoring_case(word, "facet")) {
       read_text_facet(cursor, surface);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace sinew::io {
 namespace {
@@ -23,7 +24,11 @@ Raster::Raster(const Area& area, const Palette& palette)
       columns_(width_ * kSamples),
       rows_(height_ * kSamples),
       palette_(palette),
-      samples_(static_cast<std::size_t>(columns_) * rows_, Sample{-INFINITY, 0, 0, 0, 0}) {}
+      samples_(static_cast<Sample*>(std::calloc(static_cast<std::size_t>(columns_) * rows_, sizeof(Sample)))),
+      least_x_(columns_),
+      least_y_(rows_) {
+  if (!samples_) throw std::bad_alloc();
+}
 
 void Raster::add(const std::array<Corner, 3>& corners, const std::array<double, 3>& edge) {
   double px[3], py[3];  // in samples, their centres at whole numbers
@@ -47,15 +52,27 @@ void Raster::add(const std::array<Corner, 3>& corners, const std::array<double, 
   const int from_y = std::max(0, static_cast<int>(std::min({py[0], py[1], py[2]})));
   const int to_x = static_cast<int>(std::min(columns_ - 1.0, std::max({px[0], px[1], px[2]})));
   const int to_y = static_cast<int>(std::min(rows_ - 1.0, std::max({py[0], py[1], py[2]})));
+  if (from_x > to_x || from_y > to_y) return;
+  least_x_ = std::min(least_x_, from_x);
+  least_y_ = std::min(least_y_, from_y);
+  most_x_ = std::max(most_x_, to_x);
+  most_y_ = std::max(most_y_, to_y);
   for (int y = from_y; y <= to_y; ++y) {
-    Sample* row = samples_.data() + static_cast<std::size_t>(y) * columns_;
-    for (int x = from_x; x <= to_x; ++x) {
+    Sample* row = samples_.get() + static_cast<std::size_t>(y) * columns_;
+    // Where no share is negative, and one column more on both sides: what rounding leaves is judged sample by sample.
+    double first = from_x, last = to_x;
+    for (int i = 0; i < 3; ++i) {
+      const double crossing = -(at_y[i] * y + at_0[i]) / at_x[i];
+      if (at_x[i] > 0.0) first = std::max(first, crossing - 1.0);
+      if (at_x[i] < 0.0) last = std::min(last, crossing + 1.0);
+    }
+    for (int x = static_cast<int>(std::min(first, 1e9)); x <= last; ++x) {
       const double w0 = at_x[0] * x + at_y[0] * y + at_0[0], w1 = at_x[1] * x + at_y[1] * y + at_0[1];
       const double w2 = at_x[2] * x + at_y[2] * y + at_0[2];
       if (w0 < 0.0 || w1 < 0.0 || w2 < 0.0) continue;
       const auto mean = [&](double a, double b, double c) { return w0 * a + w1 * b + w2 * c; };
       const auto depth = static_cast<float>(mean(corners[0].place.z(), corners[1].place.z(), corners[2].place.z()));
-      if (depth <= row[x].depth) continue;
+      if (depth <= depth_of(row[x])) continue;
       const double value = mean(corners[0].value, corners[1].value, corners[2].value);
       double brightness = mean(corners[0].light, corners[1].light, corners[2].light);
       brightness *=
@@ -72,8 +89,8 @@ bool Raster::outlined(int x, int y, int reach) const {
   const Sample* here = &at(x, y);
   // A step, not a slope: beyond what the other side's slope leads to. (Nothing at all is at minus infinity.)
   const auto steps_down = [&](std::ptrdiff_t way) {
-    const float rise = std::max(0.0f, here[-way].depth - here->depth);
-    return here[way].depth < here->depth - kJump - rise;
+    const float rise = std::max(0.0f, depth_of(here[-way]) - here->depth);
+    return depth_of(here[way]) < here->depth - kJump - rise;
   };
   const std::ptrdiff_t down = static_cast<std::ptrdiff_t>(reach) * columns_;
   const std::ptrdiff_t down_slant = static_cast<std::ptrdiff_t>(slant) * columns_;
@@ -92,8 +109,8 @@ void Raster::paint(cairo_t* page, const Paint& paint) const {
   }
   const int stride = cairo_image_surface_get_stride(image);
   const int reach = static_cast<int>(std::lround(paint.width * kSamples));
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
+  for (int y = least_y_ / kSamples; y <= most_y_ / kSamples && most_y_ >= 0; ++y) {
+    for (int x = least_x_ / kSamples; x <= most_x_ / kSamples; ++x) {
       double red = 0.0, green = 0.0, blue = 0.0, alpha = 0.0;  // premultiplied
       for (int k = 0; k < kSamples * kSamples; ++k) {
         const int i = x * kSamples + k % kSamples, j = y * kSamples + k / kSamples;
@@ -101,7 +118,7 @@ void Raster::paint(cairo_t* page, const Paint& paint) const {
         if (!sample.covered) continue;
         const bool line = reach > 0 && outlined(i, j, reach);
         double opacity = line ? paint.line : paint.fill;
-        if (paint.before != nullptr && paint.before->at(i, j).depth > sample.depth) opacity *= paint.hidden;
+        if (paint.before != nullptr && depth_of(paint.before->at(i, j)) > sample.depth) opacity *= paint.hidden;
         alpha += opacity;
         red += opacity * (line ? paint.line_color.red : sample.red / 255.0);
         green += opacity * (line ? paint.line_color.green : sample.green / 255.0);

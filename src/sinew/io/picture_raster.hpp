@@ -5,8 +5,10 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
-#include <vector>
+#include <cstdlib>
+#include <memory>
 
 #include "sinew/io/color_map.hpp"
 #include "sinew/io/picture_view.hpp"
@@ -43,17 +45,22 @@ class Raster {
  private:
   static constexpr int kSamples = 3;  ///< each way, in a pixel
 
-  struct Sample {
-    float depth;
+  struct Sample {  // all zero: nothing is there
+    float depth;   ///< of what is covered; see depth_of
     std::uint8_t red, green, blue, covered;
   };
+  static float depth_of(const Sample& sample) { return sample.covered ? sample.depth : -INFINITY; }
   const Sample& at(int x, int y) const { return samples_[static_cast<std::size_t>(y) * columns_ + x]; }
   bool outlined(int x, int y, int reach) const;
 
   int left_, top_, width_, height_;  ///< [px]
   int columns_, rows_;               ///< samples
   Palette palette_;
-  std::vector<Sample> samples_;
+  struct Free {
+    void operator()(Sample* samples) const { std::free(samples); }
+  };
+  std::unique_ptr<Sample[], Free> samples_;  ///< fresh memory is zero, and costs nothing where nothing is drawn
+  int least_x_, least_y_, most_x_ = -1, most_y_ = -1;  ///< [samples] what triangles have come to
 };
 
 }  // namespace sinew::io

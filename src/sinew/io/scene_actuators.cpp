@@ -59,6 +59,9 @@ Type<Limits> limits() {
        {field<Limits>({"force", optional, "the least and most force [N]; of what pulls the least is 0 if left out",
                        "[0.5 N, 20 N]"},
                       &Limits::force, force),
+        field<Limits>({"tension", optional, "the least and most tension of a tendon [N], another word for its force",
+                       "[0.5 N, 20 N]"},
+                      &Limits::force, force),
         field<Limits>({"torque", optional, "the least and most torque of what turns [N m]", "[-20 mN m, 20 mN m]"},
                       &Limits::force, torque),
         field<Limits>({"displacement", optional, "the least and most displacement [m]", "[0 mm, 30 mm]"},
@@ -70,7 +73,8 @@ Type<Limits> limits() {
         field<Limits>({"turning_speed", optional, "how fast it turns at most [rad/s]", "90 deg/s"}, speed,
                       quantity(Dimension::turning, above(0.0))),
         field<Limits>({"force_rate", optional, "how fast its force changes at most [N/s]", "20 N/s"},
-                      &Limits::force_rate, quantity(Dimension::force_rate, above(0.0)))}});
+                      &Limits::force_rate, quantity(Dimension::force_rate, above(0.0)))},
+       {at_most_one({"force", "tension"})}});
 }
 
 /// What turns has torques and angles, what moves forces and displacements.
@@ -78,10 +82,12 @@ void check_limits(const At& at) {
   if (!at.has("limits")) return;
   const At given = at.child("limits");
   const bool turns = at.has("torque") || at.has("angle");
-  for (const char* key : {"force", "displacement", "speed", "force_rate"}) {
+  for (const char* key : {"force", "tension", "displacement", "speed", "force_rate"}) {
     if (turns && given.has(key))
       given.refuse_key(key, "has no meaning for what turns", "give `torque`, `angle` or `turning_speed`");
   }
+  if (given.has("tension") && !at.has("tendon"))
+    given.refuse_key("tension", "is of a tendon, and this is none", "give `force`");
   for (const char* key : {"torque", "angle", "turning_speed"}) {
     if (!turns && given.has(key))
       given.refuse_key(key, "has no meaning for what does not turn", "give `force`, `displacement` or `speed`");

@@ -23,8 +23,8 @@ Type<RodLoad> rod_load() {
   return map<RodLoad>(
       {"a load",
        {field<RodLoad>({"rod", required, "the rod that is loaded", "cable"}, &RodLoad::rod, name_of("rod")),
-        field<RodLoad>({"at", optional, "the abscissa of a point load [m]; the tip if left out", "50 mm"}, &RodLoad::at,
-                       quantity(Dimension::length, at_least(0.0))),
+        field<RodLoad>({"at", optional, "the abscissa of a point load [m]; `tip`, as if left out, is the tip", "50 mm"},
+                       &RodLoad::at, abscissa()),
         field<RodLoad>({"from", optional, "the abscissa where a distributed load begins [m]", "0"}, &RodLoad::from,
                        quantity(Dimension::length, at_least(0.0))),
         field<RodLoad>({"to", optional, "the abscissa where a distributed load ends [m]", "100 mm"}, &RodLoad::to,

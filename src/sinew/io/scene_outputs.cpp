@@ -61,13 +61,14 @@ Type<Output> output() {
         field<Output>({"between", optional, "two objects, of which is recorded how they touch", "[cube, floor]"},
                       &Output::between, list<std::string>("two names", text(), {2, 2})),
         field<Output>({"rod", optional, "the rod whose point is recorded", "cable"}, &Output::rod, name_of("rod")),
-        field<Output>({"at", optional, "the abscissa of the point on the rod [m]", "100 mm"}, &Output::at,
-                      quantity(Dimension::length, at_least(0.0))),
+        field<Output>(
+            {"at", optional, "the abscissa of the point on the rod [m]; `tip`, as if left out, is its tip", "100 mm"},
+            &Output::at, abscissa()),
         field<Output>({"quantity", optional, "what is recorded there: " + known(), "strain"}, &Output::quantity,
                       word_of<Quantity>(quantity_words())),
         region()},
        {exactly_one({"solid", "rod", "body", "between"}), excludes("between", {"quantity"}), needs("point", "solid"),
-        needs("in", "solid"), needs("reach", "solid"), needs("region", "solid"), needs("rod", "at"), needs("at", "rod"),
+        needs("in", "solid"), needs("reach", "solid"), needs("region", "solid"), needs("at", "rod"),
         point_unless_reaction()}});
 }
 

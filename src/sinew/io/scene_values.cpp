@@ -56,6 +56,17 @@ Words<Strain> strain_words() {
 
 Type<In> in() { return word_of<In>({{"object", In::object}, {"world", In::world}}); }
 
+Type<std::optional<double>> abscissa() {
+  const Type<double> length = quantity(Dimension::length, at_least(0.0));
+  return {[=](const At& at) -> std::optional<double> {
+            if (at.is(Node::Kind::scalar) && at.node().text == "tip") return std::nullopt;
+            return length.read(at);
+          },
+          [=] {
+            return any_of({{{"const", "tip"}}, length.schema()});
+          }};
+}
+
 Type<std::filesystem::path> file_name() {
   const Type<std::string> name = text();
   return {[=](const At& at) { return std::filesystem::path(name.read(at)); }, name.schema};

@@ -32,6 +32,9 @@ Type<Track> track(Dimension dimension, int components);
 /// One value, or a pair of values for the two ends.
 Type<Taper> taper(Dimension dimension, Range range);
 
+/// Of a point on a rod [m]; none: its tip, for which the file says `tip`, or nothing.
+Type<std::optional<double>> abscissa();
+
 /// A count up to 10000, or a list of ascending lengths.
 Type<std::variant<int, std::vector<double>>> count_or_lengths(int least, bool from_zero);
 

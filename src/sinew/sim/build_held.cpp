@@ -4,6 +4,7 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/contact_places.hpp"
+#include "sinew/solid/mesh_pieces.hpp"
 
 namespace sinew::building {
 
@@ -47,18 +48,19 @@ std::vector<Vec3> null_space(const Eigen::Matrix3d& S, double least) {
 /// A motion t + w x r moves the coordinate along e_a of a node at r by t_a + w . (r x e_a). What is held along an axis
 /// lets the body move along it or not at all; with r from the mean of what is held along each axis, the turns that t
 /// can make up for are the null space of the Gram matrix of the r x e_a.
-FreeMotions free_motions(const SolidModel& solid) {
+FreeMotions free_motions(const SolidModel& solid, const std::vector<int>& nodes) {
   const solid::Body& body = solid.body;
   const auto holds = [&](int axis, int node) {
     return body.unknown(axis, node) < 0 || (solid.springs.size() > 0 && solid.springs(axis, node) > 0.0);
   };
   FreeMotions free;
   Eigen::Matrix3d S = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d mean = body.rest.rowwise().mean().replicate<1, 3>();  // a column an axis
+  const Vec3 middle_at_rest = body.rest(Eigen::all, nodes).rowwise().mean();
+  Eigen::Matrix3d mean = middle_at_rest.replicate<1, 3>();  // a column an axis
   int count = 0;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Vec3> held;
-    for (int node = 0; node < body.nodes(); ++node) {
+    for (const int node : nodes) {
       if (holds(axis, node)) held.emplace_back(body.rest.col(node));
     }
     if (held.empty()) {
@@ -106,26 +108,77 @@ std::string in_words(const FreeMotions& free, double size) {
   return joined(both);
 }
 
+/// "its piece of 96 cells about [0.03, 0.005, 0.005] m", or "it" if there is but one.
+std::string piece_in_words(const SolidModel& solid, const solid::Pieces& pieces, int piece,
+                           const std::vector<int>& nodes) {
+  if (pieces.count == 1) return "it";
+  const auto cells = std::count(pieces.of_cell.begin(), pieces.of_cell.end(), piece);
+  const Vec3 middle = solid.body.rest(Eigen::all, nodes).rowwise().mean();
+  return "its piece of " + std::to_string(cells) + " cells about " + text(middle) + " m";
+}
+
+/// The pieces that what holds a solid leaves a motion.
+struct FreePieces {
+  int count = 0;
+  int worst = -1;          ///< the first that no coupling holds either, or the first
+  bool coupled = false;    ///< it is
+  std::vector<int> nodes;  ///< of it
+  FreeMotions motions;     ///< its
+};
+
+/// Per piece of a solid: whether a coupling holds it.
+std::vector<bool> coupled_pieces(const Model& model, int number, const solid::Pieces& pieces) {
+  std::vector<bool> coupled(static_cast<std::size_t>(pieces.count), false);
+  const auto mark = [&](int solid, const solid::EmbeddedPoint& where) {
+    if (solid != number) return;
+    coupled[static_cast<std::size_t>(pieces.of_cell[static_cast<std::size_t>(where.element)])] = true;
+  };
+  for (const PointModel& point : model.points) mark(point.solid, point.where);
+  for (const SolidRow& row : model.solid_rows) mark(row.solid, row.where);
+  return coupled;
+}
+
+FreePieces free_pieces(const Model& model, int number, const solid::Pieces& pieces) {
+  const SolidModel& solid = model.solids[number];
+  std::vector<std::vector<int>> nodes(static_cast<std::size_t>(pieces.count));
+  for (int node = 0; node < solid.body.nodes(); ++node)
+    nodes[static_cast<std::size_t>(pieces.of_node[static_cast<std::size_t>(node)])].push_back(node);
+  const std::vector<bool> coupled = coupled_pieces(model, number, pieces);
+  FreePieces found;
+  for (int piece = 0; piece < pieces.count; ++piece) {
+    std::vector<int>& own = nodes[static_cast<std::size_t>(piece)];
+    FreeMotions free = free_motions(solid, own);
+    if (free.none()) continue;
+    const bool held = coupled[static_cast<std::size_t>(piece)];
+    if (found.count++ > 0 && !(found.coupled && !held)) continue;
+    found.worst = piece;
+    found.coupled = held;
+    found.nodes = std::move(own);
+    found.motions = std::move(free);
+  }
+  return found;
+}
+
 }  // namespace
 
 void check_held(Model& model, int number) {
-  const SolidModel& solid = model.solids[number];
-  const FreeMotions free = free_motions(solid);
-  if (free.none()) return;
   if (in_a_pair(model, {Collider::Kind::solid, number})) return;  // it is there to be touched
-  const std::string path = "solids." + solid.name, motions = in_words(free, solid.mesh.diagonal);
-  const bool coupled =
-      std::any_of(model.points.begin(), model.points.end(), [&](const PointModel& p) { return p.solid == number; }) ||
-      std::any_of(model.solid_rows.begin(), model.solid_rows.end(),
-                  [&](const SolidRow& row) { return row.solid == number; });
-  if (coupled || model.scene.analysis == Analysis::dynamic) {
+  const SolidModel& solid = model.solids[number];
+  const solid::Pieces pieces = solid::find_pieces(solid.body.cells, solid.body.nodes());
+  const FreePieces free = free_pieces(model, number, pieces);
+  if (free.count == 0) return;
+  const std::string path = "solids." + solid.name, motions = in_words(free.motions, solid.mesh.diagonal),
+                    more = free.count > 1 ? " (and " + std::to_string(free.count - 1) + " pieces more)" : "",
+                    what = piece_in_words(solid, pieces, free.worst, free.nodes) + more;
+  if (free.coupled || model.scene.analysis == Analysis::dynamic) {
     model.warnings.push_back({.code = "solid_free",
                               .where = path,
-                              .message = "what is fixed and its springs leave it free to " + motions +
-                                         (coupled ? ", but for its couplings" : "")});
+                              .message = "what is fixed and its springs leave " + what + " free to " + motions +
+                                         (free.coupled ? ", but for its couplings" : "")});
     return;
   }
-  reject(path + ".fixed", std::to_string(solid.held()) + " coordinates", "the body is free to " + motions,
+  reject(path + ".fixed", std::to_string(solid.held()) + " coordinates",
+         (pieces.count == 1 ? "the body" : what) + " is free to " + motions,
          "add a region to `fixed`, or `springs`, that hold it there");
 }
 

@@ -49,12 +49,12 @@ std::vector<int> free_rim(const Scene& scene, const SolidModel& solid, const std
   };
   const auto vanishes = [&](const solid::Edge& edge) {
     const std::span<const int> nodes = edge.nodes();
-    const int carrier = solid.carrier[nodes[0]];
     int held = 0, in_plane = 0;  // axes: that all nodes are held along; that stay across a plane which they stay in
     for (int axis = 0; axis < 3; ++axis) {
       const auto is_held = [&](int node) { return solid.body.unknown(axis, node) < 0; };
+      const int carrier = solid.carrier(axis, nodes[0]);
       const auto is_level = [&](int node) {
-        return solid.carrier[node] == carrier && !turns(carrier) &&
+        return solid.carrier(axis, node) == carrier && !turns(carrier) &&
                std::abs(solid.body.rest(axis, node) - solid.body.rest(axis, nodes[0])) <= 1e-6 * solid.mesh.diagonal;
       };
       if (!std::all_of(nodes.begin(), nodes.end(), is_held)) continue;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/motors.hpp"
@@ -7,6 +8,9 @@
 namespace sinew::building {
 
 namespace {
+
+/// Its length is integrated over each radian that it winds.
+constexpr double kMostTurns = 1000.0;
 
 rod::Tendon make_tendon(const Model& model, int rod, const Tendon& tendon, const std::string& path) {
   const double length = model.rods[rod].rod.length();
@@ -21,6 +25,10 @@ rod::Tendon make_tendon(const Model& model, int rod, const Tendon& tendon, const
   }
   own.start_distance = tendon.distance.start;
   own.end_distance = tendon.distance.end;
+  if (const double turns = std::abs(tendon.angle.end - tendon.angle.start) / (2.0 * std::numbers::pi);
+      !(turns <= kMostTurns))
+    reject(path + ".angle", text(turns) + " turns", "must wind about the rod at most 1000 times",
+           "angles without a unit are radians; `720 deg` are two turns");
   own.start_angle = tendon.angle.start;
   own.end_angle = tendon.angle.end;
   return own;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/quantities.hpp"
@@ -176,37 +175,6 @@ void check_targets(const Model& model) {
            "write `force: inverse` or `displacement: inverse` for some");
   if (model.scene.analysis != Analysis::dynamic && model.scene.analysis != Analysis::quasi_static)
     reject("analysis", "", "targets are met over time", "write `dynamic` or `quasi_static`");
-}
-
-void warn_of_units(Model& model) {
-  for (std::size_t i = 0; i < model.effectors.size(); ++i) {
-    const OutputModel& output = model.outputs[model.effectors[i].output];
-    const Track* const track = std::get_if<Track>(&model.scene.targets[i].at);
-    if (!track) continue;
-    double farthest = 0.0, most = 0.0;  // from where it starts; of a turn
-    const Eigen::ArrayXd counts = (model.effectors[i].weights.array() > 0.0).cast<double>();
-    for (const Eigen::VectorXd& value : track->values) {
-      farthest = std::max(farthest, (counts * (value - model.effectors[i].start).array()).matrix().norm());
-      most = std::max(most, (counts * value.array()).matrix().norm());
-    }
-    const std::string path = "targets." + output.name + ".at";
-    if (output.quantity == Quantity::position && farthest > 10.0 * model.size)
-      model.warnings.push_back({.code = "unit_of_target",
-                                .where = path,
-                                .message = "goes " + text(farthest) +
-                                           " m from where the output starts, in a scene of " + text(model.size) + " m",
-                                .remedy = "numbers without a unit are metres",
-                                .value = farthest,
-                                .limit = model.size,
-                                .unit = "m"});
-    if (output.quantity == Quantity::orientation && most > 2.0 * std::numbers::pi)
-      model.warnings.push_back({.code = "unit_of_target",
-                                .where = path,
-                                .message = "turns by " + text(most) + " rad",
-                                .remedy = "numbers without a unit are radians",
-                                .value = most,
-                                .unit = "rad"});
-  }
 }
 
 }  // namespace sinew::building

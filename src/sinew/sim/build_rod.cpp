@@ -1,4 +1,5 @@
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -151,6 +152,9 @@ std::vector<rod::Coefficients> rest_of(const RestStrains& rest, const std::vecto
 
 }  // namespace
 
+/// Of its length: it starts beside its path; of the path's size: it has nothing to do with it.
+constexpr double kOffPath = 0.01, kBesidePath = 0.2;
+
 std::vector<Vec3> path_in_world(const Scene& scene, int frame, const Rod& rod, const std::string& path) {
   const Placement pose = stand(scene, frame, rod.pose);
   std::vector<Vec3> points;
@@ -231,6 +235,44 @@ RodModel build_rod(const Scene& scene, const std::string& name, const Rod& rod) 
       reject(path + ".base", std::to_string(static_cast<int>(axis)), "names a motion twice", "list each motion once");
   }
   return model;
+}
+
+namespace {
+
+/// Twice as many sections as it has, or four times as many, and so on, until it follows its path; 0: none do.
+int sections_that_follow(const Scene& scene, const std::string& name, Rod rod, const RodModel& built) {
+  for (int count = 2 * built.rod.count(); count <= 10000; count *= 2) {
+    rod.sections = count;
+    const RodModel finer = build_rod(scene, name, rod);
+    if (finer.path_deviation <= kOffPath * finer.rod.length()) return count;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void check_path(const Scene& scene, const std::string& name, const Rod& rod, const RodModel& built,
+                std::vector<Warning>& warnings) {
+  const double off = built.path_deviation;
+  if (!(off > kOffPath * built.rod.length())) return;
+  const int enough = rod.parts.empty() ? sections_that_follow(scene, name, rod, built) : 0;
+  const std::string path = "rods." + name,
+                    remedy = enough > 0 ? "`sections: " + std::to_string(enough) + "` follow it"
+                                        : "give it more sections, or the strains that the path asks for";
+  Eigen::AlignedBox3d box;
+  for (const Vec3& point : rod.path) box.extend(point);
+  if (off > kBesidePath * box.diagonal().norm())
+    reject(path, text(off) + " m off its path",
+           "its sections and strains cannot follow the path, which is " + text(box.diagonal().norm()) + " m large",
+           remedy + "; `start: rest` if it is to start in another shape");
+  warnings.push_back(
+      {.code = "rod_off_path",
+       .where = path,
+       .message = "it starts " + text(off) + " m off its path, which its sections and strains cannot follow",
+       .remedy = remedy,
+       .value = off,
+       .limit = kOffPath * built.rod.length(),
+       .unit = "m"});
 }
 
 bool add_base_motion(RodModel& model, const rod::BaseMotion& motion) {

@@ -4,6 +4,7 @@
 
 #include "sinew/sim/building.hpp"
 #include "sinew/solid/mesh_order.hpp"
+#include "sinew/solid/mesh_pieces.hpp"
 
 namespace sinew::building {
 
@@ -55,6 +56,51 @@ void check_tied(const std::vector<solid::Cell>& cells, const std::string& path) 
            "join nodes at the same place in the program that writes the mesh");
 }
 
+/// "node 12 (0-based) at [1, 2, 3]", in the file's numbers and unit.
+std::string node_in_words(const solid::Mesh& mesh, int node) {
+  return "node " + std::to_string(node) + " (0-based) at " + text(Vec3(mesh.nodes.col(node)));
+}
+
+/// Cells must share the nodes by which they meet. Pieces that do not hang together are told.
+void check_pieces(const solid::Mesh& mesh, const std::string& path, std::vector<Warning>& warnings) {
+  const solid::Pieces pieces = solid::find_pieces(mesh.cells, mesh.nodes.cols());
+  if (const std::vector<int> hanging = solid::hanging_nodes(mesh.nodes, mesh.cells, pieces); !hanging.empty())
+    reject(path, node_in_words(mesh, hanging.front()),
+           "lies on a face of a cell that does not have it, and the body would come apart there (" +
+               std::to_string(hanging.size()) + " such nodes)",
+           "mesh both sides with the same nodes (in Gmsh: BooleanFragments before meshing)");
+  const std::vector<std::array<int, 2>> same = solid::coincident_nodes(mesh.nodes, mesh.cells);
+  if (!same.empty())
+    warnings.push_back(
+        {.code = "nodes_coincide",
+         .where = path,
+         .message = std::to_string(same.size()) + " nodes are at the place of another and not tied to it, the first " +
+                    node_in_words(mesh, same.front()[0]) + " and node " + std::to_string(same.front()[1]),
+         .remedy = "join nodes at the same place in the program that writes the mesh, unless a crack is "
+                   "meant there",
+         .value = static_cast<double>(same.size())});
+  if (pieces.count > 1)
+    warnings.push_back({.code = "mesh_pieces",
+                        .where = path,
+                        .message = "it is " + std::to_string(pieces.count) +
+                                   " pieces that share no nodes, so nothing ties them to each other",
+                        .remedy = "join them in the program that writes the mesh, or give each its own file and solid",
+                        .value = static_cast<double>(pieces.count),
+                        .limit = 1.0});
+}
+
+/// What a reader has changed.
+void tell_of_changes(const solid::Mesh& mesh, const std::string& path, std::vector<Warning>& warnings) {
+  if (mesh.turned > 0)
+    warnings.push_back(
+        {.code = "elements_turned",
+         .where = path,
+         .message =
+             std::to_string(mesh.turned) +
+             " elements, all of their kind, were inside out and are turned: their nodes stood in the other order",
+         .remedy = "see that the mesh is not mirrored; the program that wrote it can write it right"});
+}
+
 /// Gives 4-node tetrahedra nodes in the middle of their edges where that is asked for, or where they meet cells that
 /// have them.
 void raise_order(solid::Mesh& mesh, int order, const std::string& path, std::vector<Warning>& warnings) {
@@ -104,20 +150,24 @@ solid::Material make_material(const SolidMaterial& material, const Solid& solid,
   return {material.law, density, {b * moduli.mu + eta, b * moduli.lambda - 2.0 / 3.0 * eta}};
 }
 
-/// Holds the coordinates of the nodes in `fixed`, each by its frame.
+/// Holds the coordinates of the nodes in `fixed`, each by its frame: along different axes these may be different ones.
 Eigen::Array<bool, 3, Eigen::Dynamic> hold(const Scene& scene, const Solid& solid, const std::string& path,
                                            SolidModel& model) {
   const Eigen::Index nodes = model.body.rest.cols();
   Eigen::Array<bool, 3, Eigen::Dynamic> held = Eigen::Array<bool, 3, Eigen::Dynamic>::Constant(3, nodes, false);
-  model.carrier.assign(static_cast<std::size_t>(nodes), -1);
+  model.carrier = Eigen::Array3Xi::Constant(3, nodes, -1);
   for (const Held& own : solid.fixed) {
     const int frame = own.frame ? find_frame(scene, own.frame, path + ".fixed") : model.frame;
     for (const int node : select(model, own.region, path + ".fixed").nodes) {
-      if (held.col(node).any() && model.carrier[node] != frame)
-        reject(path + ".fixed", text(Vec3(model.body.rest.col(node))) + " m", "a node there is held by two frames",
-               "let every node be held by one frame");
-      model.carrier[node] = frame;
-      for (int axis = 0; axis < 3; ++axis) held(axis, node) = held(axis, node) || own.axes[axis];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!own.axes[axis]) continue;
+        if (held(axis, node) && model.carrier(axis, node) != frame)
+          reject(path + ".fixed", text(Vec3(model.body.rest.col(node))) + " m",
+                 std::string("a node there is held along ") + "xyz"[axis] + " by two frames",
+                 "let one frame hold a node along an axis; others may hold it along other `axes`");
+        model.carrier(axis, node) = frame;
+        held(axis, node) = true;
+      }
     }
   }
   return held;
@@ -158,8 +208,10 @@ SolidModel build_solid(const Scene& scene, const std::string& name, const Solid&
   if (mesh.cells.empty())
     reject(path + ".mesh", solid.mesh.string(), "is a surface without elements",
            "mesh the volume inside it, for example with Gmsh, and name that file");
-  model.mesh.number = compact(mesh);
+  tell_of_changes(mesh, path + ".mesh", warnings);
   check_tied(mesh.cells, path + ".mesh");
+  check_pieces(mesh, path + ".mesh", warnings);
+  model.mesh.number = compact(mesh);
   raise_order(mesh, solid.order, path, warnings);
   model.mesh.object = solid.scale * mesh.nodes;
   model.mesh.boundary = solid::boundary(mesh.cells);

@@ -55,10 +55,13 @@ double length_of(const Model& model, const Line& line) {
   return line.rod >= 0 ? model.rods[line.rod].rod.length() : model.cables[line.cable].cable.length;
 }
 
+/// People write the length of a path to about so many digits.
+constexpr double kLastDigit = 1e-6;
+
 double abscissa_on(const Model& model, int rod, const std::optional<double>& at, const std::string& path) {
   const double length = model.rods[rod].rod.length();
   if (!at) return length;
-  if (!(*at >= 0.0 && *at <= length * (1.0 + 1e-9)))
+  if (!(*at >= 0.0 && *at <= length * (1.0 + kLastDigit)))
     reject(path, text(*at) + " m", "must lie on the rod, from 0 to " + text(length) + " m", "measure from the base");
   return std::min(*at, length);
 }

@@ -100,6 +100,10 @@ struct Stretch {
 Stretch stretch_on(const Model& model, int rod, const std::optional<double>& from, const std::optional<double>& to,
                    const std::string& path, const std::string& remedy);
 
+/// That its sections and strains can follow its path: warns where it starts beside it, and refuses where it is far off.
+void check_path(const Scene& scene, const std::string& name, const Rod& rod, const RodModel& built,
+                std::vector<Warning>& warnings);
+
 /// A rod at the start of the run.
 rod::Configuration start_shape(const RodModel& rod);
 
@@ -128,7 +132,7 @@ void build_output(Model& model, const std::string& name, const Output& output);
 void build_target(Model& model, int number);
 /// Targets and sought actuators need each other.
 void check_targets(const Model& model);
-/// Of positions without mm and turns in degrees, once everything is known.
+/// Of numbers that look as if their unit was forgotten, once everything is known.
 void warn_of_units(Model& model);
 
 /// Model::bearing: Young's moduli times areas, E A and E I / L^2 of rods, forces of loads and actuators, weights, and

@@ -6,9 +6,10 @@ void place_held(const StepContext& context, State& iterate) {
   for (std::size_t i = 0; i < iterate.solids.size(); ++i) {
     const SolidModel& model = context.model.solids[i];
     for (const int node : model.body.held_nodes) {
-      const Vec3 held = apply(context.moved(model.carrier[node]), model.body.rest.col(node));
       for (int axis = 0; axis < 3; ++axis) {
-        if (model.body.unknown(axis, node) < 0) iterate.solids[i].x(axis, node) = held[axis];
+        if (model.body.unknown(axis, node) < 0)
+          iterate.solids[i].x(axis, node) =
+              apply(context.moved(model.carrier(axis, node)), model.body.rest.col(node))[axis];
       }
     }
   }

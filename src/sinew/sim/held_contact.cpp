@@ -41,8 +41,9 @@ HeldInside held_inside(const StepContext& context, const ContactRoom& room, cons
     const SolidModel& own = model.solids[solid.number];
     const int frame = model.obstacles[obstacle.number].frame;
     const auto carried = [&](int node) {
-      const int carrier = own.carrier[static_cast<std::size_t>(node)];
-      return carrier != frame && (moves(carrier) || moves(frame));
+      return (own.carrier.col(node) != frame &&
+              own.carrier.col(node).unaryExpr([&](int carrier) { return moves(carrier) || moves(frame); }))
+          .any();
     };
     const auto meets = [&](int node) { return own.body.unknown.col(node).maxCoeff() < 0 && carried(node); };
     if (std::none_of(own.skin.used.begin(), own.skin.used.end(), meets)) continue;

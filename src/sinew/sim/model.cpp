@@ -160,18 +160,6 @@ void warn_of_locking(Model& model, const SolidModel& solid) {
   }
 }
 
-/// The softest gels have some 100 Pa. 0 is none, of a section whose stiffness is given.
-void warn_of_softness(double young, const std::string& path, std::vector<Warning>& warnings) {
-  if (young > 0.0 && young < 50.0)
-    warnings.push_back({.code = "unit_of_modulus",
-                        .where = path,
-                        .message = "Young's modulus is " + text(young) + " Pa, less than that of any gel",
-                        .remedy = "numbers without a unit are pascals",
-                        .value = young,
-                        .limit = 50.0,
-                        .unit = "Pa"});
-}
-
 /// Where the file has elements that are not used, the body has holes.
 void warn_of_holes(Model& model, const SolidModel& solid) {
   std::string found;
@@ -340,39 +328,13 @@ Model build(const Scene& scene, const MeshReader& read_mesh) {
     model.solids.push_back(build_solid(scene, name, solid, read_mesh, model.warnings));
     warn_of_locking(model, model.solids.back());
     warn_of_holes(model, model.solids.back());
-    const std::vector<solid::Material>& materials = model.solids.back().body.materials;  // its own, those of parts
-    for (std::size_t i = 0; i < materials.size(); ++i)
-      warn_of_softness(solid::young(solid::lame(materials[i].law)),
-                       "solids." + name + (i == 0 ? "" : ".parts." + std::to_string(i - 1)), model.warnings);
   }
   for (const auto& [name, rod] : scene.rods) {
     if (rod.cable == Cable::geometric) {
       model.cables.push_back(build_cable(scene, name, rod));
     } else {
       model.rods.push_back(build_rod(scene, name, rod));
-      const RodModel& built = model.rods.back();
-      if (built.path_deviation > 0.01 * built.rod.length())
-        model.warnings.push_back({.code = "rod_off_path",
-                                  .where = "rods." + name,
-                                  .message = "it starts " + text(built.path_deviation) +
-                                             " m off its path, which its sections and strains cannot follow",
-                                  .remedy = "give it more sections, or the strains that the path asks for",
-                                  .value = built.path_deviation,
-                                  .limit = 0.01 * built.rod.length(),
-                                  .unit = "m"});
-      warn_of_softness(rod.material.young, "rods." + name, model.warnings);
-      for (std::size_t i = 0; i < rod.parts.size(); ++i)
-        warn_of_softness(rod.parts[i].material.young, "rods." + name + ".parts." + std::to_string(i), model.warnings);
-      const double radius = rod::radius_at(built.rod.profile, 0.0);
-      if (radius > 0.5 * built.rod.length())
-        model.warnings.push_back({.code = "unit_of_radius",
-                                  .where = "rods." + name,
-                                  .message = "its radius of " + text(radius) + " m is more than half its length of " +
-                                             text(built.rod.length()) + " m",
-                                  .remedy = "numbers without a unit are metres",
-                                  .value = radius,
-                                  .limit = 0.5 * built.rod.length(),
-                                  .unit = "m"});
+      check_path(scene, name, rod, model.rods.back(), model.warnings);
     }
   }
   for (const auto& [name, body] : scene.bodies) build_body(model, name, body, read_mesh);

@@ -57,7 +57,7 @@ struct SolidModel {
   std::vector<solid::Triangle> surface;
   contact::Mesh skin;                 ///< the same, at rest, if something may touch it
   int frame = -1;                     ///< number of its frame, -1: the ground
-  std::vector<int> carrier;           ///< per node with held coordinates: number of the frame that holds it
+  Eigen::Array3Xi carrier;            ///< per axis and node, of held coordinates: number of the frame that holds it
   Eigen::Matrix3Xd springs;           ///< [N/m] per node and axis
   std::vector<int> rows;              ///< numbers of the solid rows on it
   std::vector<int> watched;           ///< and of the watched points

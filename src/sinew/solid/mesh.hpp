@@ -50,6 +50,7 @@ struct Mesh {
   std::vector<Triangle> faces;  ///< of a file that is a surface and has no cells
   std::map<std::string, Group> groups;
   std::map<std::string, int> ignored;  ///< other cells of the file: kind ("wedge", "line", ...) and how many
+  int turned = 0;                      ///< cells that were all inside out, and have been mirrored
 };
 
 /// Boundary faces of the cells, outward, each with all its nodes; in the order of the cells: those whose corners are

@@ -109,6 +109,20 @@ int meeting_orders(const std::vector<Cell>& cells) {
   }));
 }
 
+std::vector<int> untied_middles(const std::vector<Cell>& cells) {
+  std::vector<int> untied;
+  if (!has(cells, Kind::tet4)) return untied;
+  const Middles middle = middles(cells);
+  for (const Cell& cell : cells) {
+    if (cell.kind != Kind::tet4) continue;
+    each_edge(cell, [&](int a, int b, std::size_t) {
+      if (const auto at = middle.find(key_of(a, b)); at != middle.end()) untied.push_back(at->second);
+    });
+  }
+  make_ascending(untied);
+  return untied;
+}
+
 Mesh quadratic(Mesh mesh) {
   Middles middle = middles(mesh.cells);
   const auto first = static_cast<int>(mesh.nodes.cols());

@@ -13,6 +13,9 @@ namespace sinew::solid {
 /// How many 4-node tetrahedra share an edge in whose middle another cell has a node, which nothing ties to them.
 int meeting_orders(const std::vector<Cell>& cells);
 
+/// Those nodes, ascending.
+std::vector<int> untied_middles(const std::vector<Cell>& cells);
+
 /// The same mesh with 10-node tetrahedra in place of those of 4 nodes; other cells stay. New nodes are in the middle of
 /// straight edges and follow the old ones; on an edge that has a middle node that one is taken. Faces of groups get the
 /// nodes of their edges. Groups get those of their cells and faces, and where they also have other nodes (of lines and
