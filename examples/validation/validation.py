@@ -69,7 +69,7 @@ def wall(axis: Axis, at: float = 0.0) -> sinew.Held:
 
 def path_length(path: Array) -> float:
     """[m] of the curve that the engine lays through these points."""
-    rod = sinew.Rod(path=path.tolist(), section=stiffness(1, 1, 1, 1, 1, 1))
+    rod = sinew.Rod(path=path.tolist(), start="rest", section=stiffness(1, 1, 1, 1, 1, 1))  # one section, which need not follow it
     model = sinew.build(sinew.Scene(analysis="quasi_static", rods={"rod": rod}))
     return float(model.initial_state().snapshot().rods[0].abscissa[-1])
 
