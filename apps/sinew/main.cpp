@@ -1,9 +1,12 @@
 // sinew: simulates soft robots from scene files.
+#include <fcntl.h>
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "sinew/commands.hpp"
@@ -12,6 +15,7 @@
 
 namespace {
 
+constexpr int kNoStreams = 1;
 constexpr const char* kExamples = R"(
 Examples:
   sinew run examples/finger.yaml -o out/finger        simulate, write tables, ParaView files and a picture
@@ -30,9 +34,19 @@ Examples:
 Exit codes: 0 done, 2 bad input, 3 numerical stop (results kept), 4 warnings (with --strict; results kept),
 130 interrupted (results kept).)";
 
+/// Standard input, output and errors that are closed lead nowhere from now on: the next file to be opened would take
+/// their place, and what is meant for people would go into it.
+void open_standard_streams() {
+  for (int descriptor = 0; descriptor <= 2; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    if (::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY) != descriptor) std::_Exit(kNoStreams);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   CLI::App program("Sinew simulates soft robots moved by cables, rods and tubes. All units are SI.", "sinew");
   program.footer(kExamples);
   program.set_version_flag("--version", "sinew " SINEW_VERSION);

@@ -1,58 +1,82 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
+#include <chrono>
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/runs/record.hpp"
+#include "sinew/signals.hpp"
 #include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew::app {
 
 namespace {
 
-std::atomic<bool> interrupted = false;
-
-/// The first time the step is finished and all is written; the second time the program ends at once, and what was
-/// recorded is there.
-void on_signal(int signal) {
-  interrupted = true;
-  std::signal(signal, SIG_DFL);
-}
-
 /// How near targets were come to.
-void print_targets(const Model& model, const State& state, const io::Recording& recording) {
-  if (recording.steps.size() < 2) return;
+void print_targets(const Model& model, const State& state, const runs::Digest& digest) {
+  if (digest.rows.size() < 2) return;
   std::size_t reached = 0;
-  for (const io::RecordedStep& step : recording.steps) reached += step.targets.starts_with("reached") ? 1 : 0;
-  fmt::print("Targets reached in {} of {} steps; at the end {}\n", reached, recording.steps.size() - 1,
-             recording.steps.back().targets);
+  for (const auto& [targets, steps] : digest.targets)
+    reached += targets.starts_with("reached") ? static_cast<std::size_t>(steps) : 0;
+  fmt::print("Targets reached in {} of {} steps; at the end {}\n", reached, digest.rows.size() - 1,
+             digest.last.targets);
   Eigen::VectorXd errors;
   effector_errors(model, state, goal_at(model, state.time), errors);
-  for (const EffectorModel& own : model.effectors) {
-    const Measure measure = measure_of(model, own);
-    const std::string& name = model.outputs[own.output].name;
-    fmt::print("  {}: {:.3g} {} off", name, error_of(own, errors) / measure.shown, measure.name);
-    const std::vector<std::string>& columns = recording.header.signal_names;
-    const auto column = std::find(columns.begin(), columns.end(), name + ".error");
-    if (column != columns.end()) {
-      const auto error = [&](const io::RecordedStep& step) {
-        return step.signals[static_cast<std::size_t>(column - columns.begin())];
-      };
-      const auto worst = std::max_element(recording.steps.begin() + 1, recording.steps.end(),
-                                          [&](const auto& a, const auto& b) { return error(a) < error(b); });
-      fmt::print("; at most {:.3g} {}, at t = {:.4g} s: {}", error(*worst) / measure.shown, measure.name, worst->time,
-                 worst->targets);
-    }
+  for (std::size_t i = 0; i < model.effectors.size(); ++i) {
+    const EffectorModel& effector = model.effectors[i];
+    const Measure measure = measure_of(model, effector);
+    fmt::print("  {}: {:.3g} {} off", model.outputs[effector.output].name, error_of(effector, errors) / measure.shown,
+               measure.name);
+    const runs::WorstError& worst = digest.worst[i];
+    if (!worst.targets.empty())
+      fmt::print("; at most {:.3g} {}, at t = {:.4g} s: {}", worst.error / measure.shown, measure.name, worst.time,
+                 worst.targets);
     fmt::print("\n");
   }
 }
 
 void warn(const Warning& warning) { fmt::print(stderr, "warning: {}\n", to_string(warning)); }
+
+/// After an interruption tables are written as far as this allows.
+constexpr std::chrono::milliseconds kTimeForTables{150};
+
+/// What became of the views of a run.
+struct WrittenViews {
+  bool whole = true;  ///< or the program was interrupted
+  std::size_t warnings = 0;
+  std::vector<std::string> files;
+};
+
+/// Tells how a run went and writes its views, all of them or, where it was interrupted, the tables.
+WrittenViews write_views(const std::filesystem::path& folder, const runs::LoadedScene& loaded, const State& last,
+                         const runs::RunSummary& summary, std::size_t warnings_before, Progress& progress) {
+  const Model& model = loaded.model;
+  const std::filesystem::path path = runs::recording_path(folder);
+  const runs::StepSource steps = runs::steps_of(path);
+  const bool stopped_early = signalled();
+  const auto end = std::chrono::steady_clock::now() + kTimeForTables;
+  const threads::Interruption interruption(
+      [&] { return stopped_early ? std::chrono::steady_clock::now() > end : signalled(); });
+  WrittenViews written;
+  try {
+    const io::RecordingHeader header = io::RecordingReader(path).header();
+    const runs::Digest digest = runs::digest(model, summary, header.signal_names, steps);
+    written.warnings = digest.warnings.size();
+    std::for_each(digest.warnings.begin() + static_cast<std::ptrdiff_t>(warnings_before), digest.warnings.end(), warn);
+    progress.finish(fmt::format("{}, {} steps", when(model, last), digest.rows.size() - 1));
+    if (!model.effectors.empty()) print_targets(model, last, digest);
+    written.files = runs::write_views(folder, {loaded, header, steps, summary, digest},
+                                      stopped_early ? runs::Views::tables : runs::Views::all);
+    written.whole = !stopped_early;
+  } catch (const threads::Interrupted&) {
+    written.whole = false;
+  }
+  return written;
+}
 
 /// Steps from a state to the end, records them, writes the views, tells the user; returns the exit code.
 int run_and_record(const runs::LoadedScene& loaded, const State& start, const std::filesystem::path& folder,
@@ -61,51 +85,59 @@ int run_and_record(const runs::LoadedScene& loaded, const State& start, const st
   Progress progress("sinew " + loaded.file.path.filename().string(), run_duration(model.scene), options.quiet);
   const std::vector<Warning> before = runs::warnings_before(model);
   std::for_each(before.begin(), before.end(), warn);
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  const auto [end, last, summary] = runs::record(
-      model, start, [&writer](const io::RecordedStep& step) { writer.append(step); },
-      [&](const State& state, const StepReport&) {
-        progress.update(state.time, when(model, state));
-        return !interrupted.load();
-      },
-      options.threads > 0 ? options.threads : runs::usual_threads());
+  note_signals();
+  const auto [end, last, summary] = [&] {
+    const threads::Interruption interruption(signalled);
+    return runs::record(
+        model, start, [&writer](const io::RecordedStep& step) { writer.append(step); },
+        [&](const State& state, const StepReport&) {
+          progress.update(state.time, when(model, state));
+          return !signalled();
+        },
+        options.threads > 0 ? options.threads : runs::usual_threads());
+  }();
 
-  const io::Recording recording = io::read_recording(runs::recording_path(folder));
-  const std::vector<Warning> warnings = runs::all_warnings(model, summary, recording.steps);
-  std::for_each(warnings.begin() + static_cast<std::ptrdiff_t>(before.size()), warnings.end(), warn);
-  progress.finish(fmt::format("{}, {} steps", when(model, last), recording.steps.size() - 1));
-  if (!model.effectors.empty()) print_targets(model, last, recording);
-  const std::vector<std::string> files = runs::write_views(folder, loaded, recording, summary);
+  const WrittenViews written = write_views(folder, loaded, last, summary, before.size(), progress);
   if (end == RunEnd::stopped) {
     fmt::print(stderr, "Stopped at {}: {}{}\n    {}\n", when(model, last), to_string(summary.failure.status),
                summary.failure.detail.empty() ? "" : " (" + summary.failure.detail + ")",
                explain(summary.failure.status));
   }
-  if (end == RunEnd::interrupted)
-    fmt::print(stderr, "Interrupted; go on with: sinew run --resume {}\n", folder.string());
-  if (!options.quiet) {
+  if (!written.whole) {
+    fmt::print(stderr,
+               "Interrupted at {}: the recording is whole, pictures and ParaView files were left out.\n    Go on with: "
+               "sinew run --resume {}\n    Or look at what there is: sinew export {}\n",
+               when(model, last), folder.string(), folder.string());
+  }
+  if (!options.quiet && !written.files.empty()) {
     fmt::print("Results in {}/\n", folder.string());
-    for (const std::string& file : files) fmt::print("  {}\n", file);
+    for (const std::string& file : written.files) fmt::print("  {}\n", file);
   }
   if (options.profile) fmt::print("{}", runs::profile(summary));
-  if (end != RunEnd::done) return end == RunEnd::stopped ? kNumericalStop : kInterrupted;
-  return options.strict && !warnings.empty() ? kWarned : kDone;
+  if (end == RunEnd::stopped) return kNumericalStop;
+  if (!written.whole) return kInterrupted;
+  return options.strict && written.warnings > 0 ? kWarned : kDone;
 }
 
 int resume(const RunOptions& options) {
   const std::filesystem::path path = runs::recording_path(options.resume);
-  const io::Recording recording = io::read_recording(path);
+  const auto [recording, count] = io::read_ends(path);
   const runs::LoadedScene loaded = runs::load_recorded(recording, path);
-  if (recording.steps.empty())
-    throw InputError({path.string(), 0, "", "", "holds no finished step", "start the run again"});
-  const State state = unpack(loaded.model, recording.steps.back().state);
-  if (!recording.torn && state.grid >= grid_steps(loaded.model.scene) &&
-      std::filesystem::exists(options.resume / "report.json")) {
-    fmt::print("The run in {} is complete, up to {}.\n", options.resume.string(), when(loaded.model, state));
+  const Model& model = loaded.model;
+  const bool empty = recording.steps.empty();  // killed before the state at t = 0 was written
+  const State state = empty ? initial_state(model) : unpack(model, recording.steps.back().state);
+  const bool stepped = state.grid >= grid_steps(model.scene) && !recording.torn;
+  if (stepped && runs::views_complete(options.resume)) {
+    fmt::print("The run in {} is complete, up to {}.\n", options.resume.string(), when(model, state));
     return kDone;
   }
-  return run_and_record(loaded, state, options.resume, io::RecordingWriter::append_to(path), options);
+  if (!options.quiet)
+    fmt::print("{} steps are recorded in {}, up to {}; {}.\n", empty ? 0 : count - 1, options.resume.string(),
+               when(model, state), stepped ? "tables and pictures are written" : "the run goes on from there");
+  io::RecordingWriter writer = io::RecordingWriter::append_to(path);
+  if (empty) writer.append(runs::recorded(model, state, StepReport{}));
+  if (!stepped) runs::remove_views(options.resume);
+  return run_and_record(loaded, state, options.resume, std::move(writer), options);
 }
 
 }  // namespace
@@ -126,15 +158,27 @@ int run_scene(const RunOptions& options) {
 }
 
 int export_run(const std::filesystem::path& folder) {
-  const io::Recording recording = io::read_recording(runs::recording_path(folder));
-  const runs::LoadedScene loaded = runs::load_recorded(recording, runs::recording_path(folder));
+  const std::filesystem::path path = runs::recording_path(folder);
+  const auto [recording, count] = io::read_ends(path);
+  const runs::LoadedScene loaded = runs::load_recorded(recording, path);
   runs::RunSummary summary;
   const bool whole = !recording.steps.empty() && run_whole(loaded.model.scene, recording.steps.back().time);
   summary.warnings = runs::warnings_before(loaded.model);
   summary.end = whole ? "done" : "unfinished";
-  fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "",
-             recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time);
-  for (const std::string& file : runs::write_views(folder, loaded, recording, summary)) fmt::print("  {}\n", file);
+  fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "", count,
+             count == 0 ? 0.0 : recording.steps.back().time);
+  note_signals();
+  const threads::Interruption interruption(signalled);
+  try {
+    const runs::StepSource steps = runs::steps_of(path);
+    const runs::Digest digest = runs::digest(loaded.model, summary, recording.header.signal_names, steps);
+    const std::vector<std::string> files =
+        runs::write_views(folder, {loaded, recording.header, steps, summary, digest});
+    for (const std::string& file : files) fmt::print("  {}\n", file);
+  } catch (const threads::Interrupted&) {
+    fmt::print(stderr, "Interrupted: not all was written. Do it again with: sinew export {}\n", folder.string());
+    return kInterrupted;
+  }
   return kDone;
 }
 

@@ -1,9 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
@@ -12,17 +10,16 @@
 #include "sinew/io/readable.hpp"
 #include "sinew/progress.hpp"
 #include "sinew/runs/loaded_scene.hpp"
+#include "sinew/signals.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew::app {
 
 namespace {
-
-std::atomic<bool> interrupted = false;
-void on_signal(int) { interrupted = true; }
 
 /// The motors' columns and those of every effector.
 std::string header_of(const Model& model) {
@@ -96,29 +93,31 @@ int map_workspace(const WorkspaceOptions& options) {
       (model.scene.title.empty() ? options.scene.stem().string() : model.scene.title) + ": what can be reached";
   picture.up = -model.scene.gravity;
   int tried = 0, found = 0, within = 0;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  sample_reach(
-      model, commands,
-      [&](const ReachSample& sample) {
-        table.append(row_of(model, sample));
-        ++tried;
-        found += accepted(sample.status) ? 1 : 0;
-        within += sample.within ? 1 : 0;
-        if (sample.within && shown != model.effectors.end()) {
-          double force = 0.0;
-          for (const double own : sample.forces) force = std::max(force, std::abs(own));
-          picture.cloud.push_back({effector_value(model, sample.state, *shown), force});
-        }
-        progress.update(tried, fmt::format("{} of {}", tried, commands.size()));
-        return !interrupted.load();
-      },
-      options.threads);
+  note_signals();
+  const auto take = [&](const ReachSample& sample) {
+    table.append(row_of(model, sample));
+    ++tried;
+    found += accepted(sample.status) ? 1 : 0;
+    within += sample.within ? 1 : 0;
+    if (sample.within && shown != model.effectors.end()) {
+      double force = 0.0;
+      for (const double own : sample.forces) force = std::max(force, std::abs(own));
+      picture.cloud.push_back({effector_value(model, sample.state, *shown), force});
+    }
+    progress.update(tried, fmt::format("{} of {}", tried, commands.size()));
+    return !signalled();
+  };
+  try {
+    const threads::Interruption interruption(signalled);
+    sample_reach(model, commands, take, options.threads);
+  } catch (const threads::Interrupted&) {
+  }
   progress.finish(fmt::format("{} equilibria of {}, {} within all limits", found, tried, within));
   if (found < tried)
     fmt::print(stderr, "warning: {} of {} equilibria were not found; their rows in workspace.csv say why\n",
                tried - found, tried);
-  if (!picture.cloud.empty()) {
+  const bool interrupted = signalled(), draws = !interrupted && !picture.cloud.empty();
+  if (draws) {
     Snapshot rest = snapshot(model, initial_state(model), "rest");
     rest.outputs.clear();
     rest.sliding_points.clear();
@@ -130,8 +129,7 @@ int map_workspace(const WorkspaceOptions& options) {
   if (!options.quiet) {
     fmt::print("Results in {}/\n  workspace.csv      motors and outputs of every equilibrium\n",
                options.output.string());
-    if (!picture.cloud.empty())
-      fmt::print("  workspace.png      where {} was brought\n", model.outputs[shown->output].name);
+    if (draws) fmt::print("  workspace.png      where {} was brought\n", model.outputs[shown->output].name);
   }
   return interrupted ? kInterrupted : found > 0 ? kDone : kNumericalStop;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,30 @@ namespace sinew::python {
 
 namespace nb = nanobind;
 using namespace nb::literals;
+
+/// What handlers of signals throw in Python, such as KeyboardInterrupt after Ctrl-C, while the engine works without the
+/// GIL. Python runs them in its main thread alone.
+class PythonSignals {
+ public:
+  /// Whether one has thrown; takes the GIL.
+  bool thrown() {
+    if (error_) return true;
+    const nb::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) error_.emplace();
+    return error_.has_value();
+  }
+  /// Once the work has ended, with the GIL: throws it again, but a KeyboardInterrupt only where it is not taken: then
+  /// says whether there was one.
+  bool rethrow(bool takes_keyboard = false) {
+    if (!error_) return false;
+    if (!takes_keyboard || !error_->matches(PyExc_KeyboardInterrupt)) throw nb::python_error(std::move(*error_));
+    error_.reset();
+    return true;
+  }
+
+ private:
+  std::optional<nb::python_error> error_;
+};
 
 /// A model and the memory of its steps.
 class SharedModel {

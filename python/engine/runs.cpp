@@ -15,6 +15,7 @@
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/view.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew::python {
 
@@ -30,37 +31,29 @@ class Watch {
     const Clock::time_point now = Clock::now();
     if (now - last_ < std::chrono::milliseconds(50)) return true;
     last_ = now;
+    if (signals_.thrown()) return false;
     const nb::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) {
-      error_.emplace();
-      return false;
-    }
     if (!progress_.is_none()) progress_(done, note);
     return true;
   }
+  PythonSignals& signals() { return signals_; }
   /// Once the run has ended, with the GIL: whether Ctrl-C ended it; what else a signal's handler threw is thrown.
-  bool interrupted() {
-    if (!error_) return false;
-    if (!error_->matches(PyExc_KeyboardInterrupt)) throw nb::python_error(std::move(*error_));
-    error_.reset();
-    return true;
-  }
+  bool interrupted() { return signals_.rethrow(true); }
 
  private:
-  std::optional<nb::python_error> error_;
+  PythonSignals signals_;
   nb::handle progress_;
   Clock::time_point last_ = Clock::now();
 };
 
-/// Lends the steps to a recording while its files are written.
-void write_views_of(Run& own, const std::filesystem::path& folder) {
-  io::Recording recording{runs::header_of(own.model->loaded), std::move(own.steps)};
-  const struct Back {
-    Run& own;
-    io::Recording& recording;
-    ~Back() { own.steps = std::move(recording.steps); }
-  } back{own, recording};
-  runs::write_views(folder, own.model->loaded, recording, own.summary);
+/// Of a run that was interrupted the tables alone.
+void write_views_of(const Run& run, const std::filesystem::path& folder) {
+  const io::RecordingHeader header = runs::header_of(run.model->loaded);
+  const runs::StepSource steps = runs::steps_of(run.steps);
+  const runs::Digest digest = runs::digest(run.model->model, run.summary, header.signal_names, steps);
+  const bool interrupted = run.summary.end == "interrupted";
+  runs::write_views(folder, {run.model->loaded, header, steps, run.summary, digest},
+                    interrupted ? runs::Views::tables : runs::Views::all);
 }
 
 std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start, const std::optional<std::string>& folder,
@@ -76,16 +69,29 @@ std::shared_ptr<Run> simulate(ModelPointer shared, const LiveState& start, const
     std::optional<io::RecordingWriter> writer;
     if (folder) writer = runs::begin_recording(shared->loaded, first, *folder, replace);
     all->steps.push_back(runs::recorded(model, first, StepReport{}));
-    runs::Recorded recorded = runs::record(
-        model, first,
-        [&](io::RecordedStep step) {
-          if (writer) writer->append(step);
-          all->steps.push_back(std::move(step));
-        },
-        [&](const State& state, const StepReport&) { return watch.goes_on(state.time, when(model, state)); },
-        threads > 0 ? threads : runs::usual_threads());
+    const auto asked = [&watch] { return watch.signals().thrown(); };
+    runs::Recorded recorded = [&] {
+      const threads::Interruption interruption(asked);
+      return runs::record(
+          model, first,
+          [&](io::RecordedStep step) {
+            if (writer) writer->append(step);
+            all->steps.push_back(std::move(step));
+          },
+          [&](const State& state, const StepReport&) { return watch.goes_on(state.time, when(model, state)); },
+          threads > 0 ? threads : runs::usual_threads());
+    }();
     all->summary = std::move(recorded.summary);
-    if (folder) write_views_of(*all, *folder);
+    if (folder && recorded.end == RunEnd::interrupted) {
+      write_views_of(*all, *folder);
+    } else if (folder) {
+      try {
+        const threads::Interruption interruption(asked);
+        write_views_of(*all, *folder);
+      } catch (const threads::Interrupted&) {
+        all->summary.end = "interrupted";
+      }
+    }
   }
   watch.interrupted();
   return all;
@@ -168,9 +174,10 @@ std::vector<Warning> restored_warnings(nb::handle all) {
 
 nb::tuple reduced(const Run& own) {
   nb::list steps;
-  for (const io::RecordedStep& step : own.steps)
-    steps.append(nb::make_tuple(step.time, step.status, step.targets, step.newton, step.residual, step.violation,
-                                vector_of(step.signals), vector_of(step.state), tuples_of(step.warnings)));
+  for (const io::RecordedStep& step : own.steps) {
+    const std::string bytes = io::encode(step);
+    steps.append(nb::bytes(bytes.data(), bytes.size()));
+  }
   const StepReport& failure = own.summary.failure;
   return nb::make_tuple(nb::module_::import_("sinew.running").attr("_run_again"),
                         nb::make_tuple(own.model, own.summary.end, tuples_of(own.summary.warnings), own.summary.threads,
@@ -196,11 +203,10 @@ std::shared_ptr<Run> restored(ModelPointer model, const std::string& end,
   all->summary.threads = threads;
   const std::size_t signals = signal_names(model->model).size();
   for (const nb::handle own : steps) {
-    all->steps.push_back({nb::cast<double>(own[0]), nb::cast<std::string>(own[1]), nb::cast<std::string>(own[2]),
-                          nb::cast<std::uint32_t>(own[3]), nb::cast<double>(own[4]), nb::cast<double>(own[5]),
-                          nb::cast<std::vector<double>>(own[6]), nb::cast<std::vector<double>>(own[7]),
-                          restored_warnings(own[8])});
-    if (all->steps.back().signals.size() != signals) throw nb::value_error("a run of another model");
+    const auto bytes = nb::cast<nb::bytes>(own);
+    std::optional<io::RecordedStep> step = io::decode_step({bytes.c_str(), bytes.size()}, signals);
+    if (!step) throw nb::value_error("a run of another model");
+    all->steps.push_back(std::move(*step));
   }
   if (all->steps.empty()) throw nb::value_error("a run has at least its start");
   return all;
@@ -269,13 +275,15 @@ nb::tuple workspace(SharedModel& shared, int samples, nb::handle progress, int t
   {
     const nb::gil_scoped_release release;
     int tried = 0;
-    sample_reach(
-        model, spread_commands(model, samples),
-        [&](const ReachSample& sample) {
-          found.push_back(sample);
-          return watch.goes_on(++tried, std::string(to_string(sample.status)));
-        },
-        threads);
+    const threads::Interruption interruption([&watch] { return watch.signals().thrown(); });
+    const auto take = [&](const ReachSample& sample) {
+      found.push_back(sample);
+      return watch.goes_on(++tried, std::string(to_string(sample.status)));
+    };
+    try {
+      sample_reach(model, spread_commands(model, samples), take, threads);
+    } catch (const threads::Interrupted&) {
+    }
   }
   const auto rows = static_cast<Eigen::Index>(found.size()), motors = static_cast<Eigen::Index>(model.sought.size());
   Eigen::MatrixXd forces(rows, motors), positions(rows, motors), values(rows, effector_size(model));

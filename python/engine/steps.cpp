@@ -14,6 +14,7 @@
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/units.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew::python {
 
@@ -174,15 +175,17 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
     take_goal(targets, model, goal.at);
   }
   FullReport report;
+  PythonSignals signals;
   // From here on nothing of Python's runs that could look at the state: what is told has been taken.
   State& state = live.own();
-  {
+  try {
     live.busy = true;
     const struct Free {
       bool& busy;
       ~Free() { busy = false; }
     } free{live.busy};
     const nb::gil_scoped_release release;
+    const threads::Interruption interruption([&signals] { return signals.thrown(); });
     Workspaces::Loan workspace = shared.workspaces.lend(threads);
     const bool grid = model.scene.analysis == Analysis::dynamic || model.scene.analysis == Analysis::quasi_static;
     const Told by{grid ? &told : nullptr, model.effectors.empty() ? nullptr : &goal, forward};
@@ -198,6 +201,8 @@ FullReport step(SharedModel& shared, nb::handle command, LiveState& live, nb::ha
     report.times = times;
     report.warnings = std::move(warnings);
     if (!model.effectors.empty() && !forward) report.targets = describe(model, report.aim);
+  } catch (const threads::Interrupted&) {
+    signals.rethrow();
   }
   live.command = std::move(last);
   live.goal = std::move(goal);

@@ -2,6 +2,7 @@
 // `--resume` goes on to the very bytes of a run that nothing disturbed.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
 
 #include "run_folder.hpp"
@@ -104,14 +105,56 @@ TEST_F(Resume, AfterAnInterruptKeepsResultsAndGoesOnToTheSameBytes) {
     const Finished done = run.wait(60.0 * kSlower);
     EXPECT_EQ(done.code, 130) << said(done);
     EXPECT_NE(done.err.find("sinew run --resume " + scene.path_of(out)), std::string::npos) << said(done);
-    EXPECT_EQ(files_below(scene / out), files_below(scene / "reference")) << "all results are kept";
+    EXPECT_NE(done.err.find("sinew export " + scene.path_of(out)), std::string::npos) << said(done);
+    const std::vector<std::string> tables = {"report.json", "run.sinew", "signals.csv"};
+    EXPECT_EQ(files_below(scene / out), tables) << "pictures are left out";
     EXPECT_EQ(report_of(scene / out)["end"]["how"], "interrupted");
     const std::string rows = scene.signals(out);
     EXPECT_LT(rows.size(), signals.size());
     EXPECT_EQ(rows, signals.substr(0, rows.size()));
+    EXPECT_EQ(sinew(scene.export_of(out)).code, 0);
     expect_numbers_only(scene / out);
     expect_resumed_to_reference(out);
   }
+}
+
+TEST_F(Resume, FinishesAFolderWhoseViewsAreMissingOrTorn) {
+  const nlohmann::json report = report_of(scene / "reference");
+  const auto without_times = [](nlohmann::json json) {
+    json.erase("time_per_step");
+    return json;
+  };
+  for (const char* file : {"report.json", "picture.png", "signals.csv", "paraview", "paraview/finger_0000.vtu"}) {
+    for (const bool torn : {false, true}) {
+      SCOPED_TRACE(std::string(file) + (torn ? " torn" : " missing"));
+      if (torn && std::string(file) == "paraview") continue;
+      const std::string whole = torn ? read_file(scene / "reference" / file) : "";
+      std::filesystem::remove_all(scene / "reference" / file);
+      if (torn) write_file(scene / "reference" / file, whole.substr(0, whole.size() / 2));
+      expect_resumed_to_reference("reference");
+      EXPECT_EQ(without_times(report_of(scene / "reference")), without_times(report));
+    }
+  }
+}
+
+TEST_F(Resume, GivesTheReportOfTheUnbrokenRun) {
+  damage("half", recording.substr(0, recording.size() / 2));
+  expect_resumed_to_reference("half");
+  nlohmann::json whole = report_of(scene / "reference"), half = report_of(scene / "half");
+  for (nlohmann::json* report : {&whole, &half}) report->erase("time_per_step");
+  EXPECT_EQ(half, whole);
+}
+
+TEST_F(Resume, OfARunThatWasKilledBeforeItsFirstStepBegins) {
+  // A preamble of 16 bytes, a frame of 16, of which the last 8 are the size of the header.
+  std::uint64_t header = 0;
+  std::memcpy(&header, recording.data() + 24, 8);
+  damage("early", recording.substr(0, 32 + header));
+  expect_resumed_to_reference("early");
+  damage("earlier", "");
+  const Finished done = sinew(scene.resume("earlier"));
+  EXPECT_EQ(done.code, 2) << said(done);
+  EXPECT_NE(done.err.find("run the scene again"), std::string::npos) << said(done);
 }
 
 TEST_F(Resume, OfAFinishedRunChangesNothing) {

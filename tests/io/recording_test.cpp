@@ -62,6 +62,20 @@ RecordedStep step(int k) {
              Limits::infinity(),
              std::bit_cast<double>(0x7ff800000000beefULL),
              1.0 + Limits::epsilon() * k};
+  s.counts = {.halvings = 1U + static_cast<std::uint32_t>(k),
+              .rotated = k % 2 == 0,
+              .redundant = k % 3 == 0,
+              .at_floor = k % 5 == 0,
+              .unstable = k % 2 == 1,
+              .stability_known = true,
+              .contacts = 7,
+              .penetration = 1e-5 / 3.0,
+              .sweeps = 11,
+              .contact_newton = 13,
+              .unsolved = 17,
+              .complementarity = 0.1,
+              .cone = 0.2,
+              .dissipation = 0.3};
   for (int i = 0; i < k % 3; ++i) {
     s.warnings.push_back({.code = "tendon_pushes",
                           .where = "actuators." + std::to_string(i),
@@ -86,8 +100,7 @@ std::string bytes_of(const std::filesystem::path& path) {
 }
 
 Recording recording_of(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  return read_recording(stream, bytes.size(), "test");
+  return read_recording({std::make_unique<std::istringstream>(bytes), bytes.size(), "test"});
 }
 
 void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b) {
@@ -103,6 +116,7 @@ void expect_same(const RecordedStep& a, const RecordedStep& b) {
   EXPECT_EQ(a.newton, b.newton);
   expect_same_bits(a.signals, b.signals);
   expect_same_bits(a.state, b.state);
+  EXPECT_EQ(a.counts, b.counts);
   EXPECT_EQ(a.warnings, b.warnings);
 }
 
@@ -137,16 +151,18 @@ TEST_F(RecordingFile, has_the_documented_bytes) {
                                             .residual = 1.0,
                                             .violation = 2.0,
                                             .signals = {},
-                                            .state = {0.5}});
+                                            .state = {0.5},
+                                            .counts = {.halvings = 2, .rotated = true, .stability_known = true}});
   const std::string bytes = bytes_of(path_);
-  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 8 + 4 + 8 + 8 + 8 + 8 + 8));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x06\0\0\0\0\0\0\0", 16));
-  EXPECT_EQ(bytes.substr(24, 8), std::string("\x39\0\0\0\0\0\0\0", 8));                 // payload of the header
-  EXPECT_EQ(bytes.substr(32, 9), std::string("\x01\0\0\0\0\0\0\0v", 9));                // program_version
-  EXPECT_EQ(bytes.substr(bytes.size() - 70, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
-  EXPECT_EQ(bytes.substr(bytes.size() - 62, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
-  EXPECT_EQ(bytes.substr(bytes.size() - 44, 4), std::string("\x03\0\0\0", 4));
-  EXPECT_EQ(bytes.substr(bytes.size() - 16, 8), std::string("\0\0\0\0\0\0\xe0\x3f", 8));
+  ASSERT_EQ(bytes.size(), 16u + 16 + (9 + 4 * 8 + 16) + 16 + (8 + 10 + 8 + 4 + 8 + 8 + 8 + 8 + 56 + 8));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89SINEW\r\n\x07\0\0\0\0\0\0\0", 16));
+  EXPECT_EQ(bytes.substr(24, 8), std::string("\x39\0\0\0\0\0\0\0", 8));                  // payload of the header
+  EXPECT_EQ(bytes.substr(32, 9), std::string("\x01\0\0\0\0\0\0\0v", 9));                 // program_version
+  EXPECT_EQ(bytes.substr(bytes.size() - 126, 8), std::string("\0\0\0\0\0\0\0\x80", 8));  // time
+  EXPECT_EQ(bytes.substr(bytes.size() - 118, 10), std::string("\x02\0\0\0\0\0\0\0ok", 10));
+  EXPECT_EQ(bytes.substr(bytes.size() - 100, 4), std::string("\x03\0\0\0", 4));
+  EXPECT_EQ(bytes.substr(bytes.size() - 72, 8), std::string("\0\0\0\0\0\0\xe0\x3f", 8));
+  EXPECT_EQ(bytes.substr(bytes.size() - 64, 8), std::string("\x02\0\0\0\x11\0\0\0", 8));  // halvings, marks
 }
 
 TEST_F(RecordingFile, equal_runs_give_equal_bytes) {
@@ -308,14 +324,14 @@ TEST_F(RecordingFile, a_step_must_have_the_signals_of_the_header) {
 }
 
 TEST_F(RecordingFile, refuses_what_is_no_recording) {
-  EXPECT_THAT(message_of(""), HasSubstr("is not a Sinew recording"));
+  EXPECT_THAT(message_of(""), HasSubstr("is empty"));
   EXPECT_THAT(message_of("time,status,newton\n0,converged,1\n"), HasSubstr("is not a Sinew recording"));
   write(path_, 1);
   std::string newer = bytes_of(path_);
-  newer[8] = 7;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 7, and this program reads format 6"));
-  newer[8] = 5;
-  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 5, and this program reads format 6"));
+  newer[8] = 8;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 8, and this program reads format 7"));
+  newer[8] = 6;
+  EXPECT_THAT(message_of(newer), HasSubstr("has recording format 6, and this program reads format 7"));
   newer[8] = 0;
   EXPECT_THAT(message_of(newer), HasSubstr("damaged"));
   EXPECT_THROW(read_recording(folder_), InputError);

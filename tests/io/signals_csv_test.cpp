@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <clocale>
 #include <cmath>
@@ -48,6 +49,13 @@ Recording recording_of(std::vector<std::string> names, std::vector<RecordedStep>
   recording.header.signal_names = std::move(names);
   recording.steps = std::move(steps);
   return recording;
+}
+
+void write_signals_csv(const std::filesystem::path& path, const Recording& recording) {
+  const auto tells = [](const RecordedStep& step) { return !step.targets.empty(); };
+  SignalsTable table(path, recording.header, std::any_of(recording.steps.begin(), recording.steps.end(), tells));
+  for (const RecordedStep& step : recording.steps) table.add(step);
+  table.finish();
 }
 
 TEST_F(SignalsCsv, has_the_stated_columns_and_digits) {

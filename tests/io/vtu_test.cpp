@@ -12,6 +12,7 @@
 #include <string>
 #include <type_traits>
 
+#include "sinew/io/atomic_file.hpp"
 #include "sinew/io/mesh_file.hpp"
 
 namespace sinew::io {
@@ -196,9 +197,8 @@ TEST(Vtu, leaves_out_what_there_is_not) {
   EXPECT_EQ(piece(document).attribute("NumberOfCells").as_int(), 0);
 }
 
-TEST_F(Series, has_a_file_per_object_and_one_for_all_complete_after_every_snapshot) {
+TEST_F(Series, has_a_file_per_object_and_one_for_all_once_it_is_finished) {
   SeriesWriter writer(folder_);
-  EXPECT_TRUE(entries("run.pvd").empty());
   Snapshot snapshot;
   snapshot.solids = {two_tetrahedra()};
   snapshot.rods = {rod(3)};
@@ -206,27 +206,39 @@ TEST_F(Series, has_a_file_per_object_and_one_for_all_complete_after_every_snapsh
     snapshot.time = 0.1 * k;
     snapshot.solids[0].nodes(0, 0) = k;
     writer.add(snapshot);
-    const auto finger = entries("finger.pvd"), all = entries("run.pvd");
-    ASSERT_EQ(finger.size(), k + 1u);
-    ASSERT_EQ(all.size(), 2 * (k + 1u));
-    EXPECT_EQ(finger.back().file, "finger_000" + std::to_string(k) + ".vtu");
-    EXPECT_EQ(finger.back().time, 0.1 * k);
-    EXPECT_EQ(all[all.size() - 2].file, finger.back().file);
-    EXPECT_EQ(all[all.size() - 2].part, 0);
-    EXPECT_EQ(all.back().name, "cable");
-    EXPECT_EQ(all.back().part, 1);
-    EXPECT_EQ(all.back().time, 0.1 * k);
-    pugi::xml_document document;
-    ASSERT_TRUE(document.load_file((folder_ / finger.back().file).c_str()));
-    EXPECT_EQ(values<double>(piece(document).child("Points"), "Points")[0], k);
+    EXPECT_FALSE(std::filesystem::exists(folder_));
   }
   writer.finish();
   writer.finish();
   EXPECT_THROW(writer.add(snapshot), std::logic_error);
+  const auto finger = entries("finger.pvd"), all = entries("run.pvd");
+  ASSERT_EQ(finger.size(), 3u);
+  ASSERT_EQ(all.size(), 6u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Entry &own = finger[k], &solid = all[2 * k], &cable = all[2 * k + 1];
+    EXPECT_EQ(own.file, "finger_000" + std::to_string(k) + ".vtu");
+    EXPECT_EQ(own.time, 0.1 * static_cast<double>(k));
+    EXPECT_EQ(solid.file, own.file);
+    EXPECT_EQ(solid.part, 0);
+    EXPECT_EQ(cable.name, "cable");
+    EXPECT_EQ(cable.part, 1);
+    EXPECT_EQ(cable.time, own.time);
+    pugi::xml_document document;
+    ASSERT_TRUE(document.load_file((folder_ / own.file).c_str()));
+    EXPECT_EQ(values<double>(piece(document).child("Points"), "Points")[0], static_cast<double>(k));
+  }
   EXPECT_EQ(entries("cable.pvd").size(), 3u);
   SeriesWriter again(folder_);  // a shorter run into the same folder forgets the longer
   again.add(snapshot);
+  again.finish();
   EXPECT_EQ(entries("run.pvd").size(), 2u);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "finger_0001.vtu"));
+  {
+    SeriesWriter given_up(folder_);
+    given_up.add(snapshot);
+  }
+  EXPECT_EQ(entries("run.pvd").size(), 2u) << "what is not finished replaces nothing";
+  EXPECT_FALSE(std::filesystem::exists(partial_path(folder_)));
 }
 
 TEST_F(Series, no_two_objects_share_a_file) {
@@ -238,6 +250,7 @@ TEST_F(Series, no_two_objects_share_a_file) {
   snapshot.solids[2].name = "../<odd> & \"name\"";
   SeriesWriter writer(folder_);
   writer.add(snapshot);
+  writer.finish();
   const auto all = entries("run.pvd");
   ASSERT_EQ(all.size(), 5u);
   std::set<std::string> files, parts;

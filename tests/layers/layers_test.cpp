@@ -36,11 +36,11 @@ const Layers kMayInclude = {
     {"constraint", {"lie", "rod", "solid", "linalg"}},
     {"contact", {}},
     {"rigid", {"lie"}},
-    {"solve", {"linalg"}},
+    {"solve", {"linalg", "threads"}},
     {"sim", {"error", "lie", "linalg", "rod", "solid", "rigid", "contact", "constraint", "solve", "threads"}},
     {"io", {"error", "solid", "sim"}},
-    {"runs", {"error", "solid", "sim", "io"}},
-    {"live", {"error", "solid", "sim", "io", "runs"}},
+    {"runs", {"error", "solid", "sim", "io", "threads"}},
+    {"live", {"error", "solid", "sim", "io", "runs", "threads"}},
 };
 
 const std::set<std::string> kVagueNames = {"util",    "utils", "utilities", "common", "base",  "helper",

@@ -30,6 +30,10 @@ struct RecordedRun {
       values.push_back(step.signals[static_cast<std::size_t>(found - names.begin())]);
     return values;
   }
+  /// Accepted steps that are parts of one that was too long.
+  long halved() const {
+    return std::count_if(steps.begin(), steps.end(), [](const auto& step) { return step.counts.halvings > 0; });
+  }
   double last(const std::string& name) const { return signal(name).back(); }
   double largest(const std::string& name) const {
     const std::vector<double> values = signal(name);

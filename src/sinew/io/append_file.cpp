@@ -19,7 +19,8 @@ void create_folder(const std::filesystem::path& folder) {
   if (error) throw WriteError(fmt::format("cannot create folder {}: {}", folder.string(), error.message()));
 }
 
-AppendFile::AppendFile(std::filesystem::path path, Start start) : path_(std::move(path)) {
+AppendFile::AppendFile(std::filesystem::path path, Start start)
+    : path_(std::move(path)), place_(std::filesystem::absolute(path_)) {
   const int create = start == Start::empty ? O_CREAT : 0;
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | create, 0666);
   if (descriptor_ < 0) fail("cannot open", errno);
@@ -43,13 +44,31 @@ AppendFile::~AppendFile() {
 }
 
 AppendFile::AppendFile(AppendFile&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_) {}
+    : path_(std::move(other.path_)),
+      place_(std::move(other.place_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_) {}
 
 AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
   std::swap(path_, other.path_);
+  std::swap(place_, other.place_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(size_, other.size_);
   return *this;
+}
+
+void AppendFile::append(std::string_view bytes) {
+  expect_in_place();
+  write_at(size_, bytes);
+}
+
+void AppendFile::expect_in_place() const {
+  struct stat open {
+  }, named{};
+  if (::fstat(descriptor_, &open) != 0) fail("cannot write", errno);
+  if (::stat(place_.c_str(), &named) == 0 && open.st_ino == named.st_ino && open.st_dev == named.st_dev) return;
+  throw WriteError(
+      fmt::format("cannot write {}: it was deleted, moved or replaced while it was being written", path_.string()));
 }
 
 void AppendFile::write_at(std::uint64_t offset, std::string_view bytes) {

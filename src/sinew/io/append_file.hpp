@@ -33,8 +33,9 @@ class AppendFile {
   AppendFile(AppendFile&& other) noexcept;
   AppendFile& operator=(AppendFile&& other) noexcept;
 
-  /// Adds the bytes at the end. On failure throws WriteError, and none of them stays in the file.
-  void append(std::string_view bytes) { write_at(size_, bytes); }
+  /// Adds the bytes at the end. On failure throws WriteError, and none of them stays in the file. A file that was
+  /// deleted, moved or replaced in the meantime is a failure.
+  void append(std::string_view bytes);
 
   /// Replaces everything from `offset` <= size() on by `bytes`, in one write.
   void write_at(std::uint64_t offset, std::string_view bytes);
@@ -46,9 +47,10 @@ class AppendFile {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  void expect_in_place() const;
   [[noreturn]] void fail(const std::string& what, int error) const;
 
-  std::filesystem::path path_;
+  std::filesystem::path path_, place_;  ///< as it was given, and absolute
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
 };

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "sinew/io/append_file.hpp"
+#include "sinew/io/atomic_file.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
 // Fontconfig keeps its patterns behind encoded pointers, which the leak checker does not follow.
@@ -153,9 +153,10 @@ double Page::inked(const Area& area) const {
 void Page::save(const std::filesystem::path& png) const {
   const cairo_status_t drawn = cairo_status(cairo_);
   const cairo_status_t status =
-      drawn != CAIRO_STATUS_SUCCESS ? drawn : cairo_surface_write_to_png(surface_, png.c_str());
+      drawn != CAIRO_STATUS_SUCCESS ? drawn : cairo_surface_write_to_png(surface_, partial_path(png).c_str());
   if (status != CAIRO_STATUS_SUCCESS)
     throw WriteError(fmt::format("cannot write {}: {}", png.string(), cairo_status_to_string(status)));
+  rename_to(partial_path(png), png);
 }
 
 void draw_triad(const Page& page, const PictureView& view, const Vec2& centre) {

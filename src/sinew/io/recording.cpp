@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fstream>
 #include <istream>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -145,25 +144,32 @@ std::string encode(const RecordingHeader& header) {
   return out.bytes();
 }
 
-std::string encode(const RecordedStep& step) {
-  Encoder out;
-  out.f64(step.time);
-  out.string(step.status);
-  out.string(step.targets);
-  out.u32(step.newton);
-  out.f64(step.residual);
-  out.f64(step.violation);
-  out.doubles(step.signals);
-  out.u64(step.state.size());
-  out.doubles(step.state);
-  out.u64(step.warnings.size());
-  for (const Warning& own : step.warnings) {
-    for (const std::string* text : {&own.code, &own.where, &own.message, &own.remedy, &own.unit}) out.string(*text);
-    for (const double value : {own.time, own.value, own.limit}) out.f64(value);
-    out.u32(static_cast<std::uint32_t>(own.steps));
-    out.u32(own.latest ? 1 : 0);
-  }
-  return out.bytes();
+enum Mark : std::uint32_t { kRotated = 1, kRedundant = 2, kAtFloor = 4, kUnstable = 8, kStabilityKnown = 16 };
+
+void encode(const StepCounts& counts, Encoder& out) {
+  out.u32(counts.halvings);
+  out.u32((counts.rotated ? kRotated : 0U) | (counts.redundant ? kRedundant : 0U) | (counts.at_floor ? kAtFloor : 0U) |
+          (counts.unstable ? kUnstable : 0U) | (counts.stability_known ? kStabilityKnown : 0U));
+  out.u32(counts.contacts);
+  out.f64(counts.penetration);
+  for (const std::uint32_t count : {counts.sweeps, counts.contact_newton, counts.unsolved}) out.u32(count);
+  for (const double left : {counts.complementarity, counts.cone, counts.dissipation}) out.f64(left);
+}
+
+StepCounts decode_counts(Decoder& in) {
+  StepCounts counts;
+  counts.halvings = in.u32();
+  const std::uint32_t marks = in.u32();
+  counts.rotated = (marks & kRotated) != 0;
+  counts.redundant = (marks & kRedundant) != 0;
+  counts.at_floor = (marks & kAtFloor) != 0;
+  counts.unstable = (marks & kUnstable) != 0;
+  counts.stability_known = (marks & kStabilityKnown) != 0;
+  counts.contacts = in.u32();
+  counts.penetration = in.f64();
+  for (std::uint32_t* count : {&counts.sweeps, &counts.contact_newton, &counts.unsolved}) *count = in.u32();
+  for (double* left : {&counts.complementarity, &counts.cone, &counts.dissipation}) *left = in.f64();
+  return counts;
 }
 
 std::optional<RecordingHeader> decode_header(std::string_view payload) {
@@ -178,7 +184,31 @@ std::optional<RecordingHeader> decode_header(std::string_view payload) {
   return header;
 }
 
-std::optional<RecordedStep> decode_step(std::string_view payload, const RecordingHeader& header) {
+}  // namespace
+
+std::string encode(const RecordedStep& step) {
+  Encoder out;
+  out.f64(step.time);
+  out.string(step.status);
+  out.string(step.targets);
+  out.u32(step.newton);
+  out.f64(step.residual);
+  out.f64(step.violation);
+  out.doubles(step.signals);
+  out.u64(step.state.size());
+  out.doubles(step.state);
+  encode(step.counts, out);
+  out.u64(step.warnings.size());
+  for (const Warning& own : step.warnings) {
+    for (const std::string* text : {&own.code, &own.where, &own.message, &own.remedy, &own.unit}) out.string(*text);
+    for (const double value : {own.time, own.value, own.limit}) out.f64(value);
+    out.u32(static_cast<std::uint32_t>(own.steps));
+    out.u32(own.latest ? 1 : 0);
+  }
+  return out.bytes();
+}
+
+std::optional<RecordedStep> decode_step(std::string_view payload, std::size_t signals) {
   Decoder in(payload);
   RecordedStep step;
   step.time = in.f64();
@@ -187,17 +217,18 @@ std::optional<RecordedStep> decode_step(std::string_view payload, const Recordin
   step.newton = in.u32();
   step.residual = in.f64();
   step.violation = in.f64();
-  step.signals = in.doubles(header.signal_names.size());
+  step.signals = in.doubles(signals);
   step.state = in.doubles(in.u64());
+  step.counts = decode_counts(in);
   step.warnings = in.warnings(in.u64());
   if (!in.whole()) return std::nullopt;
   return step;
 }
 
 /// Takes framed records off a stream of known length, one by one.
-class RecordReader {
+class RecordingReader::Records {
  public:
-  RecordReader(std::istream& stream, std::uint64_t left) : stream_(stream), left_(left) {}
+  Records(std::istream& stream, std::uint64_t left) : stream_(stream), left_(left) {}
 
   /// Payload of the next record, valid until the next call; nothing if it is torn or damaged.
   std::optional<std::string_view> next() {
@@ -225,16 +256,42 @@ class RecordReader {
   std::string record_;
 };
 
+namespace {
+
 InputError refused(const std::string& file, std::string rule, std::string remedy) {
   return InputError(
       {.file = file, .line = 0, .path = "", .value = "", .rule = std::move(rule), .remedy = std::move(remedy)});
 }
 
+InputError unreadable(const std::filesystem::path& path, const std::string& reason) {
+  return refused(path.string(), "cannot be read: " + reason, "give the output folder of an earlier run");
+}
+
+std::unique_ptr<std::istream> opened(const std::filesystem::path& path) {
+  errno = 0;
+  auto stream = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!*stream) throw unreadable(path, std::generic_category().message(errno));
+  return stream;
+}
+
+std::uint64_t size_of(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  if (error) throw unreadable(path, error.message());
+  return size;
+}
+
 }  // namespace
 
-Recording read_recording(std::istream& stream, std::uint64_t size, const std::string& file) {
+RecordingReader::RecordingReader(const std::filesystem::path& path)
+    : RecordingReader(opened(path), size_of(path), path.string()) {}
+
+RecordingReader::RecordingReader(std::unique_ptr<std::istream> stream, std::uint64_t size, const std::string& file)
+    : stream_(std::move(stream)), size_(size) {
   char preamble[kPreamble];
-  if (size < kPreamble || !stream.read(preamble, kPreamble) || std::string_view(preamble, 8) != kMagic)
+  if (size == 0)
+    throw refused(file, "is empty: its run was stopped before it began", "run the scene again, with --force");
+  if (size < kPreamble || !stream_->read(preamble, kPreamble) || std::string_view(preamble, 8) != kMagic)
     throw refused(file, "is not a Sinew recording", "give the recording in the output folder of a run");
   Decoder numbers({preamble + 8, 8});
   const std::uint32_t version = numbers.u32(), reserved = numbers.u32();
@@ -246,37 +303,47 @@ Recording read_recording(std::istream& stream, std::uint64_t size, const std::st
                   fmt::format("has recording format {}, and this program reads format {}", version, kRecordingVersion),
                   newer ? "read it with the newer version of Sinew that wrote it"
                         : "run the scene again, or read it with the older version of Sinew that wrote it");
-
-  Recording recording;
-  RecordReader records(stream, size - kPreamble);
-  const auto header_bytes = records.next();
+  records_ = std::make_unique<Records>(*stream_, size - kPreamble);
+  const auto header_bytes = records_->next();
   auto header = header_bytes ? decode_header(*header_bytes) : std::nullopt;
   if (!header) throw refused(file, "is damaged or breaks off before the first step", "run the scene again");
-  recording.header = std::move(*header);
-  for (;;) {
-    recording.valid_bytes = size - records.left();
-    if (records.left() == 0) return recording;
-    const auto bytes = records.next();
-    auto step = bytes ? decode_step(*bytes, recording.header) : std::nullopt;
-    if (!step) {
-      recording.torn = true;
-      return recording;
-    }
-    recording.steps.push_back(std::move(*step));
-  }
+  header_ = std::move(*header);
+  valid_bytes_ = size - records_->left();
 }
 
-Recording read_recording(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error)
-    throw refused(path.string(), "cannot be read: " + error.message(), "give the output folder of an earlier run");
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw refused(path.string(), "cannot be read: " + std::generic_category().message(errno),
-                  "give the output folder of an earlier run");
-  return read_recording(stream, size, path.string());
+RecordingReader::~RecordingReader() = default;
+RecordingReader::RecordingReader(RecordingReader&&) noexcept = default;
+RecordingReader& RecordingReader::operator=(RecordingReader&&) noexcept = default;
+
+std::optional<RecordedStep> RecordingReader::next() {
+  if (torn_ || records_->left() == 0) return std::nullopt;
+  const auto bytes = records_->next();
+  std::optional<RecordedStep> step = bytes ? decode_step(*bytes, header_.signal_names.size()) : std::nullopt;
+  torn_ = !step;
+  if (step) valid_bytes_ = size_ - records_->left();
+  return step;
+}
+
+Recording read_recording(RecordingReader reader) {
+  Recording recording{reader.header(), {}};
+  while (std::optional<RecordedStep> step = reader.next()) recording.steps.push_back(std::move(*step));
+  recording.torn = reader.torn();
+  recording.valid_bytes = reader.valid_bytes();
+  return recording;
+}
+
+Recording read_recording(const std::filesystem::path& path) { return read_recording(RecordingReader(path)); }
+
+RecordingEnds read_ends(const std::filesystem::path& path) {
+  RecordingReader reader(path);
+  RecordingEnds ends{{reader.header(), {}}};
+  while (std::optional<RecordedStep> step = reader.next()) {
+    if (ends.count++ >= 2) ends.recording.steps.pop_back();
+    ends.recording.steps.push_back(std::move(*step));
+  }
+  ends.recording.torn = reader.torn();
+  ends.recording.valid_bytes = reader.valid_bytes();
+  return ends;
 }
 
 RecordingWriter RecordingWriter::create(const std::filesystem::path& path, const RecordingHeader& header) {
@@ -290,9 +357,9 @@ RecordingWriter RecordingWriter::create(const std::filesystem::path& path, const
 
 RecordingWriter RecordingWriter::append_to(const std::filesystem::path& path) {
   AppendFile file(path, AppendFile::Start::keep);  // (first, so that no other run writes while we read)
-  const Recording recording = read_recording(path);
+  const auto [recording, count] = read_ends(path);
   if (recording.torn) file.truncate(recording.valid_bytes);
-  return {std::move(file), recording.header.signal_names.size(), recording.steps.size() + 1};
+  return {std::move(file), recording.header.signal_names.size(), count + 1};
 }
 
 void RecordingWriter::append(const RecordedStep& step) {

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "sinew/io/append_file.hpp"
-
 namespace sinew::io {
 namespace {
 
@@ -35,31 +33,30 @@ std::string row_of(const RecordedStep& step, bool targets) {
 
 }  // namespace
 
-void write_signals_csv(const std::filesystem::path& path, const Recording& recording) {
-  const bool targets = std::any_of(recording.steps.begin(), recording.steps.end(),
-                                   [](const RecordedStep& step) { return !step.targets.empty(); });
-  std::string text = header_row(recording.header.signal_names, targets);
-  for (const RecordedStep& step : recording.steps) text += row_of(step, targets);
-  AppendFile(path, AppendFile::Start::empty).append(text);
+SignalsTable::SignalsTable(const std::filesystem::path& path, const RecordingHeader& header, bool targets)
+    : file_(path), targets_(targets) {
+  file_.append(header_row(header.signal_names, targets));
 }
 
-void write_columns_csv(const std::filesystem::path& path, const Recording& recording,
-                       const std::vector<std::string>& names) {
-  const std::vector<std::string>& all = recording.header.signal_names;
-  std::vector<std::size_t> columns;
-  std::string text = "time";
+void SignalsTable::add(const RecordedStep& step) { file_.append(row_of(step, targets_)); }
+
+ColumnsTable::ColumnsTable(const std::filesystem::path& path, const RecordingHeader& header,
+                           const std::vector<std::string>& names)
+    : file_(path) {
+  const std::vector<std::string>& all = header.signal_names;
+  std::string row = "time";
   for (const std::string& name : names) {
-    columns.push_back(static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin()));
-    text += "," + cell(name);
+    columns_.push_back(static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin()));
+    row += "," + cell(name);
   }
-  text += "\n";
-  for (const RecordedStep& step : recording.steps) {
-    fmt::format_to(std::back_inserter(text), "{:.17g}", step.time);
-    for (const std::size_t column : columns)
-      fmt::format_to(std::back_inserter(text), ",{:.17g}", step.signals.at(column));
-    text += "\n";
-  }
-  AppendFile(path, AppendFile::Start::empty).append(text);
+  file_.append(row + "\n");
+}
+
+void ColumnsTable::add(const RecordedStep& step) {
+  std::string row = fmt::format("{:.17g}", step.time);
+  for (const std::size_t column : columns_)
+    fmt::format_to(std::back_inserter(row), ",{:.17g}", step.signals.at(column));
+  file_.append(row + "\n");
 }
 
 }  // namespace sinew::io

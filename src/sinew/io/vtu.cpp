@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "sinew/io/atomic_file.hpp"
+
 namespace sinew::io {
 namespace {
 
@@ -172,9 +174,19 @@ std::string vtu_text(const std::vector<ForceSnapshot>& contacts, double time) {
               doubles("force", force) + doubles("normal", normal), "");
 }
 
-SeriesWriter::SeriesWriter(std::filesystem::path folder) : folder_(std::move(folder)), taken_{"run"} {
+SeriesWriter::SeriesWriter(std::filesystem::path folder)
+    : final_(std::move(folder)), folder_(partial_path(final_)), taken_{"run"} {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);  // (of a program that was killed)
   create_folder(folder_);
   collection("run");
+}
+
+SeriesWriter::~SeriesWriter() {
+  if (finished_) return;
+  collections_.clear();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
 }
 
 void SeriesWriter::add(const Snapshot& snapshot) {
@@ -190,7 +202,12 @@ void SeriesWriter::add(const Snapshot& snapshot) {
 }
 
 void SeriesWriter::finish() {
+  if (finished_) return;
   collections_.clear();
+  std::error_code error;
+  std::filesystem::remove_all(final_, error);
+  if (error) throw WriteError(fmt::format("cannot replace {}: {}", final_.string(), error.message()));
+  rename_to(folder_, final_);
   finished_ = true;
 }
 

@@ -31,13 +31,16 @@ std::string vtu_text(const BodySnapshot& body, double time);
 std::string vtu_text(const std::vector<ForceSnapshot>& contacts, double time);
 
 /// Writes a series snapshot by snapshot. Of each solid and rod: <name>_0000.vtu, <name>_0001.vtu, ... and <name>.pvd;
-/// `run.pvd` has them all as named parts. The .pvd files are complete after every `add`, so a run that was stopped, or
-/// still goes on, can be looked at. Where a name is taken (a rod of a solid's name, or "run"), `_rod` or `_solid` is
-/// added to the file's. Throws WriteError.
+/// `run.pvd` has them all as named parts. Where a name is taken (a rod of a solid's name, or "run"), `_rod` or `_solid`
+/// is added to the file's. The folder is there once the series is finished, in place of any earlier one; until then its
+/// files are in `<folder>.partial`. Throws WriteError.
 class SeriesWriter {
  public:
-  /// Makes the folder if there is none.
   explicit SeriesWriter(std::filesystem::path folder);
+  /// Removes what was not finished.
+  ~SeriesWriter();
+  SeriesWriter(const SeriesWriter&) = delete;
+  SeriesWriter& operator=(const SeriesWriter&) = delete;
 
   void add(const Snapshot& snapshot);
 
@@ -62,7 +65,7 @@ class SeriesWriter {
   void add_part(Part& part, const std::string& text, double time);
   void add_entry(Collection& collection, const Part& part, const std::string& file, double time);
 
-  std::filesystem::path folder_;
+  std::filesystem::path final_, folder_;
   std::map<std::pair<std::string, std::string>, Part> parts_;  ///< by kind and name
   std::set<std::string> taken_;                                ///< file names of parts, and "run"
   std::map<std::string, Collection> collections_;

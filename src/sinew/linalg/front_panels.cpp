@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew::linalg {
 
 template <class Real>
@@ -75,6 +77,7 @@ bool FrontPanels<Real>::factor_fronts(threads::Crew& crew, const HalfSolve* righ
     taken &= ~own;
   });
   for (const int s : plan_->top) {
+    threads::Interruption::check();
     const Front& front = plan_->fronts[static_cast<std::size_t>(s)];
     if (!ok || !factor_front(front, nullptr, below_, crew, right)) return false;
   }

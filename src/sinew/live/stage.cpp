@@ -7,6 +7,7 @@
 #include "sinew/error/input_error.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/signals.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew::live {
 
@@ -193,6 +194,8 @@ bool Simulation::advance_once(const Wishes& wishes) {
     try {
       report_ = advance(model_, workspace_, state_, effort, by);
       merge(report_.warnings, warnings);
+    } catch (const threads::Interrupted&) {
+      return false;
     } catch (const std::exception& error) {  // memory, say: people still look on
       trouble_ = error.what();
       return false;
@@ -232,6 +235,7 @@ void Simulation::publish(const Wishes& wishes) {
 }
 
 void Simulation::work() {
+  const threads::Interruption interruption([this] { return end_.load(); });
   const double h = model_.scene.time.step;
   const auto per_frame = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / kFrames));
   Clock::time_point due = Clock::now(), shown = due - per_frame, counted = due;

@@ -1,6 +1,7 @@
 // What pages look at: a simulation that goes on while they watch, or a recorded run that is played.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -84,7 +85,7 @@ class Simulation {
   std::mutex mutex_;  ///< of what follows
   std::condition_variable wake_;
   Wishes wishes_;
-  bool end_ = false;
+  std::atomic<bool> end_ = false;  ///< (a step that is running looks without the mutex)
   std::thread thread_;
 };
 

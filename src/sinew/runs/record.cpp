@@ -111,6 +111,7 @@ io::RecordingWriter begin_recording(const LoadedScene& loaded, const State& star
     file.append(bytes);
   }
   io::RecordingWriter writer = io::RecordingWriter::create(path, header_of(loaded));
+  remove_views(folder);
   writer.append(recorded(loaded.model, start, StepReport{}));
   return writer;
 }
@@ -148,17 +149,7 @@ RunSummary begin_summary(const Model& model, int threads) {
   return summary;
 }
 
-void add(const StepReport& report, RunSummary& summary) {
-  summary.times.push_back(report.times);
-  summary.rotated += report.rotated ? 1 : 0;
-  summary.redundant += report.redundant ? 1 : 0;
-  summary.halved += report.halvings > 0 ? 1 : 0;
-  add(report.contact, summary.contact);
-  summary.floors += report.at_floor ? 1 : 0;
-  ++(!report.stability_known ? summary.not_known : report.unstable ? summary.unstable : summary.stable);
-  if (const Warning* inverted = find_warning(report.warnings, "elements_inverted"))
-    summary.most_inverted = std::max(summary.most_inverted, static_cast<int>(inverted->value));
-}
+void add(const StepReport& report, RunSummary& summary) { summary.times.push_back(report.times); }
 
 void conclude(const Model& model, const State& last, RunEnd end, RunSummary& summary) {
   summary.end = end_word(end);

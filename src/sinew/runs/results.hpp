@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/io/recording.hpp"
+#include "sinew/runs/digest.hpp"
 #include "sinew/runs/loaded_scene.hpp"
 #include "sinew/sim/step.hpp"
 
@@ -17,18 +18,8 @@ struct RunSummary {
   StepReport failure;             ///< if it stopped
   std::vector<Warning> warnings;  ///< of the scene and of how the run ended; those of steps are recorded
   std::vector<StageTimes> times;  ///< of each step made by this program; none for recorded ones
-  int rotated = 0;                ///< of those, steps in which the rotated tangent stood in for the exact one
-  int most_inverted = 0;          ///< of those, most elements flat or inside out in one
   int threads = 1;
-  int halved = 0;     ///< of those, parts of steps that were too long
-  int redundant = 0;  ///< of those, steps whose rows repeated each other
-  int floors = 0;     ///< of those, steps whose forces were balanced to their rounding, not to the tolerance
-  int stable = 0, unstable = 0, not_known = 0;  ///< of analyses at rest: equilibria told as these
-  ContactReport contact;                        ///< of those, as `add` puts them together
 };
-
-/// Sums of what was done, the largest of all else.
-void add(const ContactReport& step, ContactReport& all);
 
 std::filesystem::path recording_path(const std::filesystem::path& folder);
 
@@ -44,8 +35,30 @@ double view_interval(const Scene& scene);
 /// Where the time of the steps went, for people.
 std::string profile(const RunSummary& summary);
 
-/// Writes signals.csv, the ParaView series, picture.png and report.json from a recording; returns the files' names.
-std::vector<std::string> write_views(const std::filesystem::path& folder, const LoadedScene& loaded,
-                                     const io::Recording& recording, const RunSummary& summary);
+/// A run whose views are written.
+struct RecordedRun {
+  const LoadedScene& loaded;
+  const io::RecordingHeader& header;
+  const StepSource& steps;
+  const RunSummary& summary;
+  const Digest& digest;  ///< of these steps
+};
+
+enum class Views {
+  all,
+  tables  ///< neither picture nor ParaView files, which take longest
+};
+
+/// Writes the views of a run: signals.csv, the ParaView series, picture.png, and report.json as the last, which has the
+/// sizes of all others. Each is written aside and renamed. Returns the files' names, for people. Throws io::WriteError,
+/// and threads::Interrupted where the calling thread is interrupted; what was written until then is whole.
+std::vector<std::string> write_views(const std::filesystem::path& folder, const RecordedRun& run,
+                                     Views views = Views::all);
+
+/// Removes the views that a folder has, which are those of an earlier run, or of a part of this one.
+void remove_views(const std::filesystem::path& folder);
+
+/// Whether the views of a folder are all there and were not changed in size since report.json was written.
+bool views_complete(const std::filesystem::path& folder);
 
 }  // namespace sinew::runs

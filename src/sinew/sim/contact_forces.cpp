@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/sim/places.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -124,6 +125,7 @@ void ContactForces::prepare(const StepContext& context, const State& iterate, co
     moved_[i].setZero(touched ? context.model.rods[i].rod.strain_coordinates() : 0, n);
   }
   for (int row = 0; row < n; ++row) {
+    threads::Interruption::check();
     if (row >= 3 * static_cast<int>(touching_.size()) && row % 3 != 1) continue;
     lambda_ = Eigen::VectorXd::Unit(n, row);
     respond(context, free, factor, lambda_);
@@ -300,6 +302,8 @@ void ContactForces::solve(const StepContext& context, const State& iterate, cons
     const solve::CoulombReport found = coulomb_.solve(problem_, kCoulombTolerance, lambda_);
     report_.sweeps += found.sweeps;
     report_.newton += found.newton;
+    report_.work += found.work;
+    report_.cut += found.cut ? 1 : 0;
     report_.unsolved += found.solved ? 0 : 1;
     report_.left = found.residual;
     respond(context, free, factor, lambda_ - old_);

@@ -10,6 +10,7 @@
 
 #include "sinew/sim/contact_folds.hpp"
 #include "sinew/sim/contact_way.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -150,6 +151,7 @@ Passage look_again(const StepContext& context, const State& next, const ContactR
   };
   std::vector<ContactState> candidates;
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
+    threads::Interruption::check();
     const PairModel& pair = model.pairs[i];
     const auto number = static_cast<int>(i);
     const double speed = motion_of(pair.a) + motion_of(pair.b);

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew {
 
 using Kind = Collider::Kind;
@@ -497,6 +499,7 @@ class Search {
     double widest = 0.0;
     for (const Edge& other : others) widest = std::max(widest, other.box.sizes().x());
     for (const Edge& one : all) {
+      threads::Interruption::check();
       const contact::Box where = grown(one.box);
       auto other = std::partition_point(others.begin(), others.end(), [&](const Edge& edge) {
         return edge.box.min().x() < where.min().x() - widest;

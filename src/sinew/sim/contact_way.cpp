@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/lie/rotation.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -151,6 +152,7 @@ double deepest_of_parts(const StepMotion& motion, const ContactState& own, doubl
   const double shortest = std::min(shortest_look(speed, thin), 1.0 / kPlaces);
   double deepest = 0.0;
   for (double t = 0.0;;) {
+    threads::Interruption::check();
     const double gap = separation(motion, own, t);
     deepest = std::max(deepest, before - gap);
     if (t >= 1.0) return deepest;
@@ -163,6 +165,7 @@ double deepest_of_shapes(const StepMotion& motion, const PairModel& pair, double
   const double before = pair.depth > 0.0 ? overlap_of_shapes(motion, pair, 0.0) : 0.0;
   double deepest = 0.0;
   for (double t = 0.0;;) {
+    threads::Interruption::check();
     const double gap = gap_of_shapes(motion, pair, t, speed);
     deepest = std::max(deepest, -gap - before);
     if (t >= 1.0) return deepest;
@@ -200,6 +203,7 @@ double least_distance(const StepMotion& motion, const ContactState& own, double 
 bool parts_stay_clear(const StepMotion& motion, const ContactState& own, double speed, double margin) {
   double t = 0.0;
   for (int place = 0; place < kMostPlaces; ++place) {
+    threads::Interruption::check();
     const double gap = least_distance(motion, own, t);
     if (!(gap > margin)) return false;
     if (t >= 1.0) return true;
@@ -221,6 +225,7 @@ bool shapes_stay_clear(const StepMotion& motion, const PairModel& pair, double m
   const double speed = shift.norm() + turning;
   double t = 0.0;
   for (int place = 0; place < kMost; ++place) {
+    threads::Interruption::check();
     const Apart apart = apart_on_way(motion, pair, t, speed + 2.0 * margin);
     if (!(apart.gap > margin)) return false;
     if (std::isinf(apart.gap)) return true;

@@ -10,6 +10,7 @@
 #include "sinew/sim/curve_contact.hpp"
 #include "sinew/sim/first_guess.hpp"
 #include "sinew/sim/places.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -222,6 +223,7 @@ void let_pass(const StepContext& context, const Moment& start, const std::vector
   };
   std::vector<Known> known(model.pairs.size());
   for (std::size_t i = 0; i < model.pairs.size(); ++i) {
+    threads::Interruption::check();
     const PairModel& pair = model.pairs[i];
     if (turns_far(pair.a) || turns_far(pair.b)) {
       shapes[i] = known[i].edges = Way::meets;
@@ -322,8 +324,10 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
   const double fall = context.rate > 0.0 ? context.gravity.norm() * context.h * context.h : 0.0;
   const double depth = 2.0 * fall + 2e-3 * context.model.size;
   const double far = std::max(alarm, kSoughtWithin * context.model.size);
-  for (std::size_t i = 0; i < context.model.pairs.size(); ++i)
+  for (std::size_t i = 0; i < context.model.pairs.size(); ++i) {
+    threads::Interruption::check();
     search(start, context.model.pairs[i].sought ? far : alarm, depth, room.surfaces, static_cast<int>(i), found);
+  }
   std::stable_sort(found.begin(), found.end(), earlier);
   // What was there keeps its force.
   auto old = iterate.contacts.begin();

@@ -120,6 +120,8 @@ struct Found {
     report.times = spent.times;
     report.contact.sweeps = spent.contact.sweeps;
     report.contact.newton = spent.contact.newton;
+    report.contact.work = spent.contact.work;
+    report.contact.cut = spent.contact.cut;
   }
 };
 

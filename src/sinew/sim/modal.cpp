@@ -12,6 +12,7 @@
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/statics.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -79,6 +80,7 @@ class Stiffness {
   Eigen::Index cols() const { return at_->size; }
   void set_shift(double) {}  // 0
   void perform_op(const double* in, double* out) const {
+    threads::Interruption::check();
     const Model& model = at_->model;
     const Eigen::Map<const Eigen::VectorXd> f(in, at_->size);
     Eigen::Map<Eigen::VectorXd> u(out, at_->size);
@@ -228,6 +230,8 @@ std::vector<NaturalMode> lanczos_modes(const Coordinates& at, Linearization& her
   try {
     solver.init();
     solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10);
+  } catch (const threads::Interrupted&) {
+    throw;
   } catch (const std::exception&) {  // (of numbers that are none)
     failed = "the equations about the equilibrium cannot be solved";
     return {};

@@ -10,6 +10,7 @@
 #include "sinew/sim/rolling.hpp"
 #include "sinew/sim/step_ends.hpp"
 #include "sinew/sim/unbalanced.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -221,6 +222,7 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
   constexpr double kCorrected = 1e-4;  // contacts are corrected to this at least, and as Newton contracts
   constexpr int kSteady = 4, kPatience = 3, kTrial = 2;
   for (;; ++report.newton) {
+    threads::Interruption::check();
     if (report.newton == 0 || rules.across) {
       at(iterate.t, context);
       place_held(context, iterate.state);
@@ -316,6 +318,8 @@ StepReport newton(const ContextAt& at, Memory& memory, const NewtonRules& rules,
       here.stiffen();
       here.solve(increment);
     }
+    if (contacts_cost_too_much(here.contact_report()))
+      return fail(Status::max_iterations, too_many_contacts(context.model, iterate.state));
     if (std::string contact = here.unanswered_contact(); !contact.empty())
       return fail(Status::inconsistent, std::move(contact));
     if ((!increment.reduced.ok || increment.reduced.redundant) && here.find_redundant()) {

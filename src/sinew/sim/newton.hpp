@@ -41,6 +41,15 @@ struct NewtonRules {
   Inverse* inverse = nullptr;                ///< commands are looked for, too: it has begun
 };
 
+/// Whether contact problems of a step have cost too much: three of them took all the work that one may take
+/// (solve/coulomb) and were not solved, or all together some twenty seconds of a processor. It is given up then, as no
+/// shorter part of it has fewer contacts.
+inline bool contacts_cost_too_much(const ContactReport& spent) {
+  constexpr int kMostCut = 3;
+  constexpr double kMostWork = 8e10;  // multiplications
+  return spent.cut >= kMostCut || spent.work > kMostWork;
+}
+
 /// Says what is prescribed at t.
 using ContextAt = std::function<void(double t, StepContext& context)>;
 

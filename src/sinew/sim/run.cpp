@@ -13,6 +13,7 @@
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/redundancy.hpp"
 #include "sinew/sim/statics.hpp"
+#include "sinew/threads/interruption.hpp"
 
 namespace sinew {
 
@@ -152,6 +153,8 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     report.times += earlier.times;
     report.contact.sweeps += earlier.contact.sweeps;
     report.contact.newton += earlier.contact.newton;
+    report.contact.work += earlier.contact.work;
+    report.contact.cut += earlier.contact.cut;
     spent += report.newton;
     if (accepted(report.status)) {
       state.time = time;
@@ -166,6 +169,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
       earlier.detail += (earlier.detail.empty() ? "" : "; ") + has_cost(spent);
       break;
     }
+    if (contacts_cost_too_much(earlier.contact)) break;
   }
   return give_up();
 }
@@ -218,13 +222,18 @@ bool run_whole(const Scene& scene, double time) { return time >= run_duration(sc
 RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure, int threads) {
   Workspace workspace = make_workspace(model, threads);
   const long steps = grid_steps(model.scene);
-  while (state.grid < steps) {
-    const StepReport report = advance(model, workspace, state, {.compared = true});
-    if (!accepted(report.status)) {
-      if (failure) *failure = report;
-      return RunEnd::stopped;
+  try {
+    while (state.grid < steps) {
+      threads::Interruption::check();
+      const StepReport report = advance(model, workspace, state, {.compared = true});
+      if (!accepted(report.status)) {
+        if (failure) *failure = report;
+        return RunEnd::stopped;
+      }
+      if (!on_step(state, report)) return RunEnd::interrupted;
     }
-    if (!on_step(state, report)) return RunEnd::interrupted;
+  } catch (const threads::Interrupted&) {
+    return RunEnd::interrupted;
   }
   return RunEnd::done;
 }

@@ -39,7 +39,8 @@ enum class RunEnd { done, stopped, interrupted };
 /// Takes every accepted state; returns false to interrupt the run.
 using OnStep = std::function<bool(const State&, const StepReport&)>;
 
-/// Steps from `state` to the end of the scene's duration. `failure` receives the report of the step that stopped it.
+/// Steps from `state` to the end of the scene's duration. `failure` receives the report of the step that stopped it. A
+/// `threads::Interruption` of the calling thread ends it within a step, which is lost.
 RunEnd run(const Model& model, State state, const OnStep& on_step, StepReport* failure = nullptr, int threads = 1);
 
 }  // namespace sinew

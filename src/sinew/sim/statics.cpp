@@ -12,6 +12,7 @@
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/step_ends.hpp"
+#include "sinew/sim/unbalanced.hpp"
 #include "sinew/sim/work.hpp"
 
 namespace sinew {
@@ -149,7 +150,8 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
   const auto way = [&] { return moved_most(model, state, reached.at.state).far / model.size; };
   double most = INFINITY;  // [s] that has not failed lately
   int made = 0, next_look = 1;
-  for (double tau = kFirst * h; tau > kLeast * h && spent.newton < most_iterations;) {
+  for (double tau = kFirst * h;
+       tau > kLeast * h && spent.newton < most_iterations && !contacts_cost_too_much(spent.contact);) {
     StepReport report = make(1.0 / tau, tau, model.scene.newton.limit);
     const double moved = accepted(report.status) && arrived ? way() : 0.0;
     if (!accepted(report.status) || moved > kFarthest) {
@@ -176,6 +178,8 @@ Reached settle(Memory& memory, const Ramp& ramp, const State& from, double t, in
   reached.at.state.time = ramp.time(t);
   reached.report.newton = spent.newton;
   reached.report.times = spent.times;
+  reached.report.contact.work = spent.contact.work;
+  reached.report.contact.cut = spent.contact.cut;
   return reached;
 }
 
@@ -401,6 +405,9 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
 
   NewtonRules rules = whole_steps(model);
   const int iteration_limit = most * rules.limit;
+  const auto goes_on = [&](const StepReport& spent) {
+    return spent.newton < iteration_limit && !contacts_cost_too_much(spent.contact);
+  };
   rules.limit = std::min(rules.limit, kMostIterations);
   Reached end = go(state, 1.0, rules);
   StepReport spent = end.report;
@@ -428,7 +435,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   const bool elsewhere = accepted(end.report.status) && jumped({model, ramp, state, 0.0, end.at.state, 1.0});
   if (!sound(end) || elsewhere) {
     Iterate on{state, 0.0};
-    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && spent.newton < iteration_limit; ++i) {
+    for (int i = 0; i < kMostDetours && on.t != 1.0 && !touches && goes_on(spent); ++i) {
       Reached next = path_step(model, memory, ramp, on);
       add_effort(next.report, spent);
       const bool back = next.at.t < on.t && next.at.t != 1.0;  // the corrector may have gone a little beyond 1
@@ -438,8 +445,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       on = next.at;
       if (on.t == 1.0) end = std::move(next);
     }
-    for (double part = touches ? 0.5 : kSmallestPart;
-         on.t != 1.0 && part >= kSmallestPart && spent.newton < iteration_limit;) {
+    for (double part = touches ? 0.5 : kSmallestPart; on.t != 1.0 && part >= kSmallestPart && goes_on(spent);) {
       Reached next = go(on.state, std::min(on.t + part, 1.0), rules);
       add_effort(next.report, spent);
       if (!sound(next) || jumped({model, ramp, on.state, on.t, next.at.state, next.at.t})) {
@@ -453,7 +459,10 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
       part *= 2.0;
       if (on.t == 1.0) end = std::move(next);
     }
-    if (on.t != 1.0 && spent.newton >= iteration_limit && most < kMostOfEquilibrium) {
+    if (on.t != 1.0 && contacts_cost_too_much(spent.contact)) {
+      end.report.status = Status::max_iterations;
+      end.report.detail = too_many_contacts(model, end.at.state);
+    } else if (on.t != 1.0 && spent.newton >= iteration_limit && most < kMostOfEquilibrium) {
       end.report.status = Status::max_iterations;
     } else if (!stops && on.t != 1.0) {
       rules = {model.scene.newton.limit, false, Linearization::Wanted::descent, nullptr};
@@ -482,6 +491,8 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   }
   end.report.newton = spent.newton;
   end.report.times = spent.times;
+  end.report.contact.work = spent.contact.work;
+  end.report.contact.cut = spent.contact.cut;
   end.report.warnings.insert(end.report.warnings.end(), snaps.begin(), snaps.end());
   if (!accepted(end.report.status)) return {state, end.report};
   end.at.state.path = {};

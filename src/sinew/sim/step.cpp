@@ -56,6 +56,8 @@ void add_effort(const StepReport& part, StepReport& whole) {
   whole.times += part.times;
   whole.contact.sweeps += part.contact.sweeps;
   whole.contact.newton += part.contact.newton;
+  whole.contact.work += part.contact.work;
+  whole.contact.cut += part.contact.cut;
 }
 
 Workspace::Workspace(const Model& model, int threads) : memory_(std::make_unique<Memory>(model, threads)) {}

@@ -73,6 +73,8 @@ struct ContactReport {
   int deepest_pair = -1;        ///< of the model's
   bool between_nodes = false;   ///< there: an edge in a surface, between its nodes
   int sweeps = 0, newton = 0;   ///< of solve/coulomb in the whole step
+  double work = 0.0;            ///< of it in the whole step, multiplications
+  int cut = 0;                  ///< of its problems in the step, those that took all the work that one may take
   int unsolved = 0;             ///< of its problems in the step, those not solved to its tolerance
   solve::CoulombResidual left;  ///< of the last one
 };

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew {
 
 namespace {
@@ -89,6 +91,7 @@ SurfaceOverlap SurfaceWatch::crossings(const Pair& pair) const {
         &others = model_->solids[pair.other].surface;
   const auto solid = static_cast<std::size_t>(pair.solid), other = static_cast<std::size_t>(pair.other);
   for (std::size_t i = 0; i < own.size(); ++i) {
+    threads::Interruption::check();
     trees_[other].each_near(boxes_[solid][i], [&](int j) {
       const auto number = static_cast<std::size_t>(j);
       if (solid == other && (number <= i || share_a_node(own[i], others[number]))) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sinew/error/digits.hpp"
 #include "sinew/sim/contact_places.hpp"
@@ -118,6 +119,17 @@ std::string most_unbalanced(const StepContext& context, const Linearization& her
     text += (text.empty() ? "" : "; ") + std::string("the contact of ") + name(restless) + " came and went " +
             std::to_string(*often) + " times";
   return text;
+}
+
+std::string too_many_contacts(const Model& model, const State& state) {
+  std::map<int, int> contacts;  // of each pair
+  for (const ContactState& contact : state.contacts) ++contacts[contact.pair];
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto most = std::max_element(contacts.begin(), contacts.end(), fewer);
+  if (most == contacts.end()) return "contacts are too much work";
+  return std::to_string(state.contacts.size()) + " contacts are too much work, " + std::to_string(most->second) +
+         " of them of " + name_of_pair(model, most->first) +
+         "; give simpler shapes (`hull: true`), or begin where they do not overlap";
 }
 
 std::string hardest_contact(const Model& model, const State& state) {

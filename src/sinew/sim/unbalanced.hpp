@@ -16,6 +16,9 @@ namespace sinew {
 std::string most_unbalanced(const StepContext& context, const Linearization& here, const State& iterate, double allowed,
                             const std::vector<int>& turns);
 
+/// "540 contacts are too much work, 300 of them of disc and ring": the pair that has most.
+std::string too_many_contacts(const Model& model, const State& state);
+
 /// "ball and beam near (0.1, 0, 0.02) m": the contact of a finished step that presses hardest; empty without any.
 std::string hardest_contact(const Model& model, const State& state);
 

@@ -1,6 +1,7 @@
 // Workspaces that are lent: for threads that step different states of one model at the same time.
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -22,7 +23,10 @@ class Workspaces {
   class Loan {
    public:
     Loan(Workspaces& owner, int threads) : owner_(owner), threads_(threads), own_(owner.take(threads)) {}
-    ~Loan() { owner_.give_back(threads_, std::move(own_)); }
+    /// What an exception has left half-way is not lent again.
+    ~Loan() {
+      if (std::uncaught_exceptions() == exceptions_) owner_.give_back(threads_, std::move(own_));
+    }
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     Workspace& operator*() { return *own_; }
@@ -30,6 +34,7 @@ class Workspaces {
    private:
     Workspaces& owner_;
     int threads_;
+    int exceptions_ = std::uncaught_exceptions();
     std::unique_ptr<Workspace> own_;
   };
   /// Until the loan ends; `threads` share the work of its steps.

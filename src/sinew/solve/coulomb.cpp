@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew::solve {
 
 using Eigen::Vector2d;
@@ -275,7 +277,8 @@ bool Coulomb::newton(const CoulombProblem& problem, double tolerance, Eigen::Vec
   held_ = lambda;
   double merit = evaluate(problem, lambda);
   int worse = 0;
-  for (int turn = 0; turn < kMost;) {
+  for (int turn = 0; turn < kMost && work_ <= kMostWork;) {
+    threads::Interruption::check();
     const double largest = std::max(lambda.lpNorm<Eigen::Infinity>(), 1e-300);
     if (F_.lpNorm<Eigen::Infinity>() <= 0.1 * tolerance * largest) {
       if (residual(problem, lambda).largest() <= tolerance) return true;
@@ -408,13 +411,18 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     newton(problem, tolerance, lambda, report.newton);
     report.solved = keep();
   }
-  for (std::size_t turn = 0; turn < std::size(kYields) && !report.solved && idle < kIdle; ++turn) {
+  for (std::size_t turn = 0; turn < std::size(kYields) && !report.solved && idle < kIdle && work_ <= kMostWork;
+       ++turn) {
     lambda = best_;
     const double before = report.residual.largest();
     // (Sweeps may have to get worse before they get better: the last ones, which are many, begin afresh.)
     if (turn + 1 == std::size(kYields)) lambda.setZero();
-    for (int i = 0; i < sweeps && lambda.lpNorm<Eigen::Infinity>() <= bound; ++i, ++report.sweeps)
+    for (int i = 0; i < sweeps && lambda.lpNorm<Eigen::Infinity>() <= bound && work_ <= kMostWork; ++i) {
+      threads::Interruption::check();
       sweep(problem, lambda);
+      ++report.sweeps;
+      work_ += static_cast<double>(problem.D.size());
+    }
     if (!(lambda.lpNorm<Eigen::Infinity>() <= bound)) lambda = best_;
     report.solved = keep();
     if (report.solved) break;
@@ -425,7 +433,8 @@ CoulombReport Coulomb::solve(const CoulombProblem& problem, double tolerance, Ei
     idle = before <= nearly && report.residual.largest() > 0.5 * before ? idle + 1 : 0;
   }
   lambda = best_;
-  report.work = work_ + report.sweeps * static_cast<double>(problem.D.size());
+  report.work = work_;
+  report.cut = !report.solved && work_ > kMostWork;
   return report;
 }
 

@@ -46,6 +46,7 @@ void sweep(const CoulombProblem& problem, Eigen::VectorXd& lambda);
 
 struct CoulombReport {
   bool solved = false;  ///< to the tolerance
+  bool cut = false;     ///< it is not, and has taken kMostWork
   int sweeps = 0;       ///< of block Gauss-Seidel
   int newton = 0;       ///< factorisations of semi-smooth Newton
   double work = 0.0;    ///< multiplications, about
@@ -65,7 +66,8 @@ struct CoulombPiece {
 class Coulomb {
  public:
   /// `lambda` is where it starts (3n, the forces of the last step or zero) and the solution, or the best that was
-  /// found. What is solved to `nearly`, and what two turns do not improve by half, is left there.
+  /// found. What is solved to `nearly`, and what two turns do not improve by half, is left there; so is what has
+  /// taken kMostWork.
   CoulombReport solve(const CoulombProblem& problem, double tolerance, Eigen::VectorXd& lambda, double nearly = 0.0);
   /// Problems from now on have another D. (Those with the same one share factors.)
   void begin() { factored_.clear(); }
@@ -76,6 +78,8 @@ class Coulomb {
   /// that are not decided as small as they can be. False where it has none.
   bool follow(const CoulombProblem& problem, const Eigen::VectorXd& lambda, const std::vector<CoulombPiece>& modes,
               const Eigen::MatrixXd& B, Eigen::MatrixXd& S);
+
+  static constexpr double kMostWork = 1e10;  ///< multiplications, some seconds
 
  private:
   void measure(const CoulombProblem& problem);

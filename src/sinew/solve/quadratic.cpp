@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew::solve {
 
 namespace {
@@ -119,6 +121,7 @@ Quadratic::Outcome Quadratic::minimise(const Eigen::MatrixXd& H, const Eigen::Ve
 
   bool settled = false, polished = false;
   while (true) {
+    threads::Interruption::check();
     values_.noalias() = rows_.transpose().lazyProduct(x);
     Limit next{-1};
     double worst = 0.0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew::solve {
 
 namespace {
@@ -206,6 +208,7 @@ bool Steering::descend(const SteeringProblem& problem, Point& at) {
   penalty_.setZero(problem.A.rows());
   place(problem, at);
   for (int turn = 0; turn < kMost && (turn == 0 || !cut_short()); ++turn) {
+    threads::Interruption::check();
     if (!piece(problem, at, Stay::anywhere)) return turn > 0;
     const double size = cost(at);
     if (!(promise_ > 1e-13 * size)) return true;
@@ -303,6 +306,7 @@ std::optional<double> Steering::bound(const SteeringProblem& problem, Point& at)
   std::size_t nodes = 0;
   const double size = 0.5 * e.squaredNorm();
   while (!open.empty() && nodes < kMostNodes) {
+    threads::Interruption::check();
     const Node node = std::move(open.back());
     open.pop_back();
     if (node.least >= best) continue;

@@ -42,6 +42,7 @@ Crew& Crew::none() {
 void Crew::work_on(Job& job) {
   for (int i; (i = job.next.fetch_add(1, std::memory_order_relaxed)) < job.count;) {
     try {
+      Interruption::check();
       job.call(job.task, i);
     } catch (...) {
       const std::lock_guard lock(mutex_);
@@ -66,7 +67,10 @@ void Crew::share(Job& job) {
     *at = job.before;
     --open_;
   }
-  while (job.helping.load(std::memory_order_acquire) > 0) pause();
+  while (job.helping.load(std::memory_order_acquire) > 0) {
+    Interruption::asked_to_end();  // (helpers see it between two tasks)
+    pause();
+  }
   if (job.failure) std::rethrow_exception(job.failure);
 }
 
@@ -91,6 +95,7 @@ void Crew::help() {
         if (job) ++job->helping;
       }
       if (job) {
+        const Interruption::Shared shared(job->interruption);
         work_on(*job);
         job->helping.fetch_sub(1, std::memory_order_release);
         last = Time::now();

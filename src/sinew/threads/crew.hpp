@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "sinew/threads/interruption.hpp"
+
 namespace sinew::threads {
 
 /// The thread that asks, and helpers. Helpers look for work for a millisecond after the last, then sleep. One thread
@@ -23,11 +25,15 @@ class Crew {
   int size() const { return static_cast<int>(helpers_.size()) + 1; }
 
   /// Calls task(0) .. task(count - 1), each once, on any thread and in any order, and returns when all are done. What
-  /// they compute must not depend on who does it, or when. The first exception is thrown again here.
+  /// they compute must not depend on who does it, or when. The first exception is thrown again here. Between two tasks
+  /// the work can be interrupted.
   template <class Task>
   void each(int count, const Task& task) {
     if (count <= 1 || helpers_.empty()) {
-      for (int i = 0; i < count; ++i) task(i);
+      for (int i = 0; i < count; ++i) {
+        Interruption::check();
+        task(i);
+      }
       return;
     }
     Job job;
@@ -45,6 +51,7 @@ class Crew {
     const void* task = nullptr;
     void (*call)(const void*, int) = nullptr;
     int count = 0;
+    Interruption* interruption = Interruption::current();
     std::atomic<int> next{0};
     std::atomic<int> helping{0};
     std::exception_ptr failure;  ///< guarded by the crew's mutex

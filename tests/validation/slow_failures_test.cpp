@@ -1,0 +1,35 @@
+// Scenes that fail, and took minutes to say so: each ends soon, with what is the matter.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/faults.hpp"
+#include "support/scenes.hpp"
+
+namespace sinew::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Two meshes stand inside each other when the run begins, and meet at some 300 places: not one step in minutes. The
+// work of their contacts is limited.
+TEST(SlowFailures, two_meshes) {
+  const RecordedRun run = fault("two_meshes");
+  EXPECT_EQ(run.recorded.end, RunEnd::stopped);
+  EXPECT_EQ(run.failure().status, Status::max_iterations) << run.why();
+  EXPECT_THAT(run.failure().detail, HasSubstr("contacts are too much work"));
+  EXPECT_THAT(run.failure().detail, HasSubstr("of disc and ring; give simpler shapes"));
+  EXPECT_LT(run.failure().contact.work, 1.2e11);  // (it was without end)
+  EXPECT_TRUE(run.warning("overlap_at_start"));
+}
+
+// A capsule on a hull, nine contacts at most: single steps took 40 s and 310 000 sweeps.
+TEST(SlowFailures, slow_capsule_hull) {
+  const RecordedRun run = fault("slow_capsule_hull");
+  EXPECT_TRUE(run.done()) << run.why();
+  long sweeps = 0;
+  for (const io::RecordedStep& step : run.steps) sweeps += step.counts.sweeps;
+  EXPECT_LT(sweeps, 20'000);
+}
+
+}  // namespace
+}  // namespace sinew::test
