@@ -9,6 +9,7 @@
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/runs/loaded_scene.hpp"
 #include "sinew/sim/contacts.hpp"
+#include "sinew/sim/load_summary.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/sliding_rods.hpp"
@@ -122,6 +123,14 @@ void print_coupling(const Model& model, std::size_t number) {
     print_sliding(model, static_cast<int>(number), *slide);
 }
 
+void print_load(const LoadSummary& load) {
+  fmt::print("load {}: {}\n", load.name.substr(load.name.find('.') + 1), describe(load));
+  if (load.faces == 0) return;
+  const double rounding = 1e-9 * std::abs(load.pressure) * load.area;  // of a closed surface nothing is left
+  const Vec3 sum = load.force.unaryExpr([rounding](double own) { return std::abs(own) > rounding ? own : 0.0; });
+  fmt::print("  they add up to ({:.3g}, {:.3g}, {:.3g}) N\n", sum.x(), sum.y(), sum.z());
+}
+
 void print_contact(const Model& model) {
   for (const BodyModel& body : model.bodies) {
     const Vec3 size = 2e3 * contact::reach(body.shape, Eigen::Matrix3d::Identity());
@@ -171,6 +180,7 @@ int check_scene(const std::filesystem::path& scene, const std::vector<std::strin
                : std::holds_alternative<External>(actuator.drive) ? " from outside (0 in this program)"
                                                                   : "");
   }
+  for (const LoadModel& load : model.loads) print_load(summary_of(model, load));
   print_contact(model);
   for (const Warning& warning : model.warnings) fmt::print("warning: {}\n", to_string(warning));
   int unknowns = model.unknowns;

@@ -31,7 +31,7 @@ TEST(Step, is_a_function_of_its_arguments_to_the_last_bit) {
 
 /// Where this has to change, kStateLayout has to be raised.
 TEST(State, is_packed_in_the_order_that_its_layout_names) {
-  ASSERT_EQ(kStateLayout, 8u);
+  ASSERT_EQ(kStateLayout, 9u);
   double next = 0.0;
   const auto number = [&next] { return next += 1.0; };
   const auto fill = [&](auto& array, int rows, int columns) {
@@ -77,6 +77,8 @@ TEST(State, is_packed_in_the_order_that_its_layout_names) {
   for (double* value : {&state.path.step, &state.path.rate}) *value = number();
   state.path.count = number();
   state.path.farthest = number();
+  state.path.work = number();
+  state.path.work_at_farthest = number();
   fill(state.path.direction, 2, 1);
   state.frequency = number();
   ContactState& contact = state.contacts.emplace_back();

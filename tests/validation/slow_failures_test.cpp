@@ -31,5 +31,21 @@ TEST(SlowFailures, slow_capsule_hull) {
   EXPECT_LT(sweeps, 20'000);
 }
 
+// 80 kPa in the chambers of a bar of 100 kPa, quadratic tetrahedra: the path turns back at 30 % of the load. It
+// wandered on for 240 steps and 40 s, and named neither the pressure nor the place.
+TEST(SlowFailures, too_much_pressure) {
+  const RecordedRun run = fault("too_much_pressure");
+  EXPECT_EQ(run.recorded.end, RunEnd::stopped);
+  EXPECT_EQ(run.failure().status, Status::path_lost) << run.why();
+  EXPECT_THAT(run.failure().detail, HasSubstr("it came as far as 30 % of the load"));
+  EXPECT_THAT(run.failure().detail, HasSubstr("a limit point"));
+  EXPECT_THAT(run.failure().detail, HasSubstr("loads.air: pressure 80 kPa on "));
+  EXPECT_THAT(run.failure().detail, HasSubstr("0.8 of its Young's modulus"));
+  EXPECT_LT(run.steps.size(), 120U);
+  int iterations = 0;
+  for (const io::RecordedStep& step : run.steps) iterations += static_cast<int>(step.newton);
+  EXPECT_LT(iterations, 800);  // (1575)
+}
+
 }  // namespace
 }  // namespace sinew::test

@@ -44,7 +44,7 @@ void on_solid(Model& model, const Output& output, const std::string& path, Outpu
   const Vec3 x =
       output.point.in == In::world ? output.point.x : apply(stand(model.scene, solid.frame, pose), output.point.x);
   own.where = embed_within(solid, x, output.reach, path + ".point", "the point");
-  if (own.where.distance > 0.0) {
+  if (lies_outside(solid, own.where)) {
     model.warnings.push_back(
         {.code = "output_outside",
          .where = path,

@@ -242,7 +242,7 @@ void build_coupling(Model& model, int number, const Slide& slide) {
                                                    : "point " + std::to_string(i) + " of the channel";
     point.where = embed_within(model.solids[solid], asked.positions[i], slide.reach,
                                path + (slide.channel.empty() ? ".points" : ".channel"), what);
-    if (point.where.distance > 0.0) ++facts.outside;
+    if (lies_outside(model.solids[solid], point.where)) ++facts.outside;
     facts.farthest = std::max(facts.farthest, point.where.distance);
   }
   const std::vector<PointModel> kept = independent_points(model, candidates, facts);

@@ -95,7 +95,7 @@ void build_coupling(Model& model, int number, const Tie& tie) {
     const int solid = find(model.scene.solids, *tie.solid, path + ".solid", "solid");
     const solid::EmbeddedPoint where =
         embed_within(model.solids[solid], position, tie.reach, path + ".at", "the point of the rod");
-    facts.outside = where.distance > 0.0 ? 1 : 0;
+    facts.outside = lies_outside(model.solids[solid], where) ? 1 : 0;
     facts.farthest = where.distance;
     model.couplings.push_back(facts);
     if (along.size() == 3 && about.empty()) {  // an anchor, wherever on the rod

@@ -110,6 +110,10 @@ rod::Configuration start_shape(const RodModel& rod);
 /// The element that carries x, rejected beyond the reach.
 solid::EmbeddedPoint embed_within(const SolidModel& solid, const Vec3& x, const std::optional<double>& reach,
                                   const std::string& path, const std::string& what);
+/// Whether a point lies outside its mesh by more than the rounding of coordinates, 1e-6 of the mesh's size.
+inline bool lies_outside(const SolidModel& solid, const solid::EmbeddedPoint& point) {
+  return point.distance > 1e-6 * solid.mesh.diagonal;
+}
 
 /// A table must have as many times as values.
 void check_drive(const Drive& drive, const std::string& path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sinew/error/digits.hpp"
 #include "sinew/solid/corotational.hpp"
 
 namespace sinew {
@@ -61,6 +62,19 @@ int count_folded(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.solids.size(); ++i)
     count += solid::folded_cells(model.solids[i].body, state.solids[i].x).size();
   return static_cast<int>(count);
+}
+
+std::string describe_folded(const Model& model, const State& state) {
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const solid::Body& body = model.solids[i].body;
+    const std::vector<int> folded = solid::folded_cells(body, state.solids[i].x);
+    if (folded.empty()) continue;
+    const Vec3 at = body.at_nodes(folded.front(), body.rest).rowwise().mean();
+    return std::to_string(count_folded(model, state)) + " elements are flat or inside out, one of them cell " +
+           std::to_string(folded.front()) + " of solids." + model.solids[i].name + ", at rest near (" +
+           three_digits(at.x()) + ", " + three_digits(at.y()) + ", " + three_digits(at.z()) + ") m";
+  }
+  return "";
 }
 
 Vec3 output_turn(const Model& model, const State& state, const OutputModel& output) {

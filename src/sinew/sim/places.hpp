@@ -44,4 +44,8 @@ bool is_pressed(const State& state, const Collider& object);
 /// How many cells of solids are flat or inside out.
 int count_folded(const Model& model, const State& state);
 
+/// "28 elements are flat or inside out, one of them cell 12 of solids.bar, at rest near (0.1, 0, 0.02) m"; empty where
+/// none is.
+std::string describe_folded(const Model& model, const State& state);
+
 }  // namespace sinew

@@ -8,6 +8,8 @@
 #include "sinew/sim/assessment.hpp"
 #include "sinew/sim/clock.hpp"
 #include "sinew/sim/inverse.hpp"
+#include "sinew/sim/iteration_work.hpp"
+#include "sinew/sim/load_summary.hpp"
 #include "sinew/sim/modal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/newton.hpp"
@@ -101,7 +103,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   StepReport earlier;
   // (Who steers may get a step that is stuck going again.)
   int spent = told.command || told.goal ? 0 : state.spent;
-  const int most = kMostOfStep * model.scene.newton.limit;
+  const int most = affordable_iterations(model, kMostOfStep * model.scene.newton.limit);
   const auto has_cost = [&](int iterations) {
     return "it came as far as " + three_digits(100.0 * (state.time - from) / h) + " % of the step in " +
            std::to_string(iterations) + " iterations";
@@ -114,6 +116,9 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   };
   const auto give_up = [&] {
     ask();
+    const std::string pressure = largest_pressure(model);
+    const bool stuck = earlier.status == Status::max_iterations || earlier.status == Status::path_lost;
+    if (stuck && !pressure.empty()) earlier.detail += (earlier.detail.empty() ? "" : "; ") + pressure;
     tell_contradiction(model, command, earlier);
     return earlier;
   };

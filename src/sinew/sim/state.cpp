@@ -122,6 +122,8 @@ void each_number(StateType& state, const Visit& visit) {
   visit(state.path.rate);
   visit(state.path.count);
   visit(state.path.farthest);
+  visit(state.path.work);
+  visit(state.path.work_at_farthest);
   array(state.path.direction);
   visit(state.frequency);
 }

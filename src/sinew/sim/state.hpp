@@ -70,10 +70,12 @@ struct Energies {
 
 /// Where a static analysis stands on its path (sim/statics.hpp); as it is made in other analyses.
 struct PathState {
-  double step = 0.0;          ///< arc length to try next
-  double rate = 0.0;          ///< last change of the load factor over the arc
-  double count = 0.0;         ///< steps taken
-  double farthest = 0.0;      ///< largest load factor so far
+  double step = 0.0;      ///< arc length to try next
+  double rate = 0.0;      ///< last change of the load factor over the arc
+  double count = 0.0;     ///< steps taken
+  double farthest = 0.0;  ///< largest load factor so far
+  double work = 0.0;      ///< spent on the path (`iteration_work`), and when `farthest` last grew
+  double work_at_farthest = 0.0;
   bool stable = true;         ///< the equilibrium there
   Eigen::VectorXd direction;  ///< and of everything else; empty before the first step and in other analyses
 };
@@ -109,7 +111,7 @@ bool moves(const State& state);
 
 /// Names the numbers of `pack` and their order. To be raised with any change of theirs: recordings of another one are
 /// refused.
-inline constexpr std::uint64_t kStateLayout = 8;
+inline constexpr std::uint64_t kStateLayout = 9;
 /// The state as plain numbers in a fixed order, contacts at the end, and back. unpack throws std::invalid_argument if
 /// their number, or a contact's pair, is not this model's.
 std::vector<double> pack(const State& state);

@@ -8,6 +8,8 @@
 #include "sinew/error/digits.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/first_guess.hpp"
+#include "sinew/sim/iteration_work.hpp"
+#include "sinew/sim/load_summary.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/places.hpp"
 #include "sinew/sim/signals.hpp"
@@ -263,6 +265,8 @@ std::optional<Warning> snapped(Memory& memory, const Between& own) {
                  .steps = 1};
 }
 
+std::string percent(double part) { return three_digits(100.0 * part) + " %"; }
+
 /// One step along a path; its arc and what the next one needs are in the state's `path`. On failure `at` is where it
 /// started from.
 Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const Iterate& from) {
@@ -274,13 +278,18 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
     return accepted(first.report.status) ? first : Reached{from, first.report};
   }
   StepReport report;
-  if (from.t < kBehindTheStart || state.path.count > kMostSteps) {
-    const bool turned_back = from.t < kBehindTheStart;
+  const bool no_progress = state.path.work - state.path.work_at_farthest > allowed_work(state.path.work);
+  if (from.t < kBehindTheStart || state.path.count > kMostSteps || no_progress) {
+    const bool turned_back = from.t < kBehindTheStart || no_progress;
     char text[80];
     std::snprintf(text, sizeof text, "it came as far as %.3g %% of the load in %.0f steps", 100.0 * state.path.farthest,
                   state.path.count);
     report.status = turned_back ? Status::path_lost : Status::path_unfinished;
     report.detail = text;
+    if (turned_back && from.t < state.path.farthest)
+      report.detail += ", a limit point, and is back at " + percent(from.t);
+    for (const std::string& reason : {largest_pressure(model), describe_folded(model, state)})
+      report.detail += reason.empty() ? "" : "; " + reason;
     return {from, report};
   }
   const ContextAt at = along(ramp, state);
@@ -339,6 +348,8 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
     PathState& path = next.at.state.path;
     path.count = state.path.count + 1.0;
     path.farthest = std::max(state.path.farthest, next.at.t);
+    path.work = state.path.work + spent.newton * iteration_work(model);
+    path.work_at_farthest = next.at.t > state.path.farthest ? path.work : state.path.work_at_farthest;
     path.step = std::clamp(arc * std::clamp(static_cast<double>(kWantedIterations) / report.newton, 0.5, 2.0),
                            kShortestArc, kLongestArc);
     path.stable = !report.unstable;
@@ -404,7 +415,7 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   };
 
   NewtonRules rules = whole_steps(model);
-  const int iteration_limit = most * rules.limit;
+  const int iteration_limit = affordable_iterations(model, most * rules.limit);
   const auto goes_on = [&](const StepReport& spent) {
     return spent.newton < iteration_limit && !contacts_cost_too_much(spent.contact);
   };
