@@ -25,14 +25,21 @@ std::string heap() {
   return scene;
 }
 
+/// Until then a signal ends the program as usual.
+void wait_for_recording(Process& run, const std::filesystem::path& out) {
+  while (run.running() && !std::filesystem::exists(out / "run.sinew"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 TEST(Interrupted, AStepOfSecondsEndsAtOnceAndTheRecordingIsReadable) {
   const SceneFolder scene(heap());
   for (const int signal : {SIGINT, SIGTERM}) {
-    for (const double after : {0.6, 1.5}) {
+    for (const double after : {0.3, 1.2}) {
       SCOPED_TRACE(std::to_string(signal) + " after " + std::to_string(after) + " s");
       std::filesystem::remove_all(scene / "out");
       Process run({"run", scene.path_of("scene.yaml"), "-o", scene.path_of("out"), "--quiet"});
-      std::this_thread::sleep_for(std::chrono::duration<double>(after));
+      wait_for_recording(run, scene / "out");
+      std::this_thread::sleep_for(std::chrono::duration<double>(after * kSlower));
       ASSERT_TRUE(run.running()) << said(run.wait(1.0));
       const auto asked = std::chrono::steady_clock::now();
       run.send(signal);
@@ -50,7 +57,9 @@ TEST(Interrupted, WorkspaceKeepsTheRowsThatItFound) {
                                             "force: inverse, limits: {force: [0 N, 5 N]}"),
                                    "outputs:", "targets: {tip: {at: [95 mm, 0 mm, 5 mm]}}\noutputs:"));
   Process run({"workspace", scene.path_of("scene.yaml"), "-o", scene.path_of("out"), "--samples", "100000"});
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  while (run.running() && !std::filesystem::exists(scene / "out" / "workspace.csv"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::this_thread::sleep_for(std::chrono::duration<double>(0.5 * kSlower));
   run.send(SIGTERM);
   const Finished done = run.wait(60.0 * kSlower);
   EXPECT_EQ(done.code, 130) << said(done);
@@ -61,8 +70,7 @@ TEST(Interrupted, WorkspaceKeepsTheRowsThatItFound) {
 TEST(Run, WhoseFolderIsDeletedEndsSoonAndSaysSo) {
   const SceneFolder scene(replaced(finger_scene, "duration: 200 ms", "duration: 1000 s"));
   Process run(scene.run("out"));
-  while (run.running() && !std::filesystem::exists(scene / "out" / "run.sinew"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  wait_for_recording(run, scene / "out");
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   std::filesystem::remove_all(scene / "out");
   const Finished done = run.wait(60.0 * kSlower);
