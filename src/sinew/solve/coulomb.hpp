@@ -79,7 +79,7 @@ class Coulomb {
   bool follow(const CoulombProblem& problem, const Eigen::VectorXd& lambda, const std::vector<CoulombPiece>& modes,
               const Eigen::MatrixXd& B, Eigen::MatrixXd& S);
 
-  static constexpr double kMostWork = 1e10;  ///< multiplications, some seconds
+  static constexpr double kMostWork = 2e11;  ///< multiplications, a minute of a processor
 
  private:
   void measure(const CoulombProblem& problem);
