@@ -22,7 +22,9 @@ import tempfile
 import time
 from pathlib import Path
 
-READABLE = (0, 130)
+# Exit codes of a run that was asked to end: it was done already, it was interrupted, or it had not begun, when the
+# signal ends the program as usual.
+ENDED = (0, 130, -signal.SIGTERM)
 
 
 def start(program: str, *arguments: str) -> subprocess.Popen[bytes]:
@@ -63,8 +65,7 @@ def end_at(program: str, scene: Path, folder: Path, moment: float) -> tuple[floa
     process.send_signal(signal.SIGTERM)
     code = process.wait()
     took = time.monotonic() - asked
-    # (Before the run begins the signal ends the program as usual.)
-    return took, (code in (*READABLE, -signal.SIGTERM)) and readable(program, folder)
+    return took, code in ENDED and readable(program, folder)
 
 
 def content(folder: Path) -> dict[str, object]:
@@ -93,9 +94,7 @@ def resumed(program: str, scene: Path, folder: Path, moment: float) -> str:
     if not recording.exists() or recording.stat().st_size == 0:  # nothing to go on from
         shutil.rmtree(folder, ignore_errors=True)
         return ""
-    if start(program, "run", "--resume", str(folder), "-q").wait() != 0:
-        return "resume fails"
-    return ""
+    return "" if start(program, "run", "--resume", str(folder), "-q").wait() == 0 else "resume fails"
 
 
 def differing(one: dict[str, object], other: dict[str, object]) -> list[str]:

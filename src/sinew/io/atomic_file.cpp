@@ -11,6 +11,12 @@ std::filesystem::path partial_path(const std::filesystem::path& path) {
   return path.parent_path() / (path.filename().string() + ".partial");
 }
 
+void remove_earlier(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::remove_all(path, error);
+  if (error) throw WriteError(fmt::format("cannot replace {}: {}", path.string(), error.message()));
+}
+
 void rename_to(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code error;
   std::filesystem::rename(from, to, error);
@@ -40,12 +46,6 @@ void AtomicFile::commit() {
   waiting_.clear();
   rename_to(partial_path(path_), path_);
   file_.reset();
-}
-
-void write_atomically(const std::filesystem::path& path, std::string_view bytes) {
-  AtomicFile file(path);
-  file.append(bytes);
-  file.commit();
 }
 
 }  // namespace sinew::io

@@ -32,11 +32,11 @@ class AtomicFile {
   std::string waiting_;
 };
 
-/// Writes a whole file in this way.
-void write_atomically(const std::filesystem::path& path, std::string_view bytes);
-
 /// Where a file or folder of that name is made.
 std::filesystem::path partial_path(const std::filesystem::path& path);
+
+/// Removes an earlier file or folder, with all that is in it, if there is one. Throws WriteError.
+void remove_earlier(const std::filesystem::path& path);
 
 /// Renames, in place of any earlier file of the new name. Throws WriteError.
 void rename_to(const std::filesystem::path& from, const std::filesystem::path& to);

@@ -204,9 +204,7 @@ void SeriesWriter::add(const Snapshot& snapshot) {
 void SeriesWriter::finish() {
   if (finished_) return;
   collections_.clear();
-  std::error_code error;
-  std::filesystem::remove_all(final_, error);
-  if (error) throw WriteError(fmt::format("cannot replace {}: {}", final_.string(), error.message()));
+  remove_earlier(final_);
   rename_to(folder_, final_);
   finished_ = true;
 }

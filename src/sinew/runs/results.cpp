@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sinew/io/atomic_file.hpp"
 #include "sinew/io/signals_csv.hpp"
 #include "sinew/io/vtu.hpp"
 #include "sinew/runs/report.hpp"
@@ -115,12 +116,6 @@ void draw(const std::filesystem::path& path, const RecordedRun& run) {
                    snapshot(model, unpack(model, digest.last.state), status), options);
 }
 
-void remove_view(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::remove_all(path, error);
-  if (error) throw io::WriteError(fmt::format("cannot replace {}: {}", path.string(), error.message()));
-}
-
 /// Bytes of a file, or of all files of a folder; -1 if there is none.
 std::int64_t size_on_disk(const std::filesystem::path& path) {
   std::error_code error;
@@ -142,7 +137,7 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
   std::vector<std::string> commands;
   for (const int sought : model.sought) commands.push_back(command_name(model.actuators[sought]));
   const std::optional<nlohmann::ordered_json> earlier = earlier_report(folder);
-  remove_view(folder / "report.json");  // (it says that all others are there)
+  io::remove_earlier(folder / "report.json");  // (it says that all others are there)
   {
     io::SignalsTable signals(folder / "signals.csv", run.header, run.digest.has_targets());
     std::optional<io::ColumnsTable> columns;
@@ -181,7 +176,7 @@ std::vector<std::string> write_views(const std::filesystem::path& folder, const 
 
 void remove_views(const std::filesystem::path& folder) {
   for (const char* name : {"report.json", "picture.png", "signals.csv", "commands.csv", "paraview"})
-    remove_view(folder / name);
+    io::remove_earlier(folder / name);
 }
 
 bool views_complete(const std::filesystem::path& folder) {
