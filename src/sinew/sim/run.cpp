@@ -103,7 +103,10 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
   StepReport earlier;
   // (Who steers may get a step that is stuck going again.)
   int spent = told.command || told.goal ? 0 : state.spent;
-  const int most = affordable_iterations(model, kMostOfStep * model.scene.newton.limit);
+  // (Asked of attempts that fail alone: it goes over all fronts of the solids.)
+  const auto spent_too_much = [&] {
+    return spent > affordable_iterations(model, kMostOfStep * model.scene.newton.limit);
+  };
   const auto has_cost = [&](int iterations) {
     return "it came as far as " + three_digits(100.0 * (state.time - from) / h) + " % of the step in " +
            std::to_string(iterations) + " iterations";
@@ -122,7 +125,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
     tell_contradiction(model, command, earlier);
     return earlier;
   };
-  if (place.parts > 0 && spent > most) {
+  if (place.parts > 0 && spent_too_much()) {
     earlier.status = Status::max_iterations;
     earlier.detail = has_cost(spent);
     return give_up();
@@ -170,7 +173,7 @@ StepReport try_to_advance(const Model& model, Workspace& workspace, State& state
       return report;
     }
     earlier = std::move(report);
-    if (spent > most) {
+    if (spent_too_much()) {
       earlier.detail += (earlier.detail.empty() ? "" : "; ") + has_cost(spent);
       break;
     }
