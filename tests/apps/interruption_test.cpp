@@ -85,8 +85,8 @@ TEST(Run, WithClosedStreamsLeavesTheSameRecording) {
   const std::string recording = scene.recording("open");
   for (const char* closed : {"0<&-", "1>&-", "2>&-", "0<&- 1>&- 2>&-"}) {
     SCOPED_TRACE(closed);
-    const std::string command = program() + " run " + scene.path_of("scene.yaml") + " -o " + scene.path_of("closed") +
-                                " --force --set view.interval='10 s' " + closed;
+    const std::string command = "'" + program() + "' run '" + scene.path_of("scene.yaml") + "' -o '" +
+                                scene.path_of("closed") + "' --force --set view.interval='10 s' " + closed;
     const std::string quiet = std::string(closed).find("1>&-") == std::string::npos ? " >/dev/null" : "";
     EXPECT_EQ(std::system((command + quiet).c_str()), 0);
     EXPECT_TRUE(scene.recording("closed") == recording);
