@@ -216,6 +216,8 @@ void describe_pieces(const solid::Mesh& mesh) {
   if (const auto hanging = solid::hanging_nodes(mesh.nodes, mesh.cells, pieces); !hanging.empty())
     fmt::print("  {} nodes lie on faces of cells that do not have them, the first {}: a scene refuses this mesh\n",
                hanging.size(), hanging.front());
+  for (const auto& [type, count] : mesh.simplified)
+    fmt::print("  {} elements of type {} are read as plain ones\n", count, type);
   if (mesh.turned > 0) fmt::print("  {} elements, all of their kind, were inside out and are turned\n", mesh.turned);
 }
 

@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
 
   std::filesystem::path mesh;
   CLI::App* info =
-      program.add_subcommand("info", "Sizes and quality of a mesh (legacy VTK, VTU, Gmsh MSH; surfaces: STL, OBJ)");
+      program.add_subcommand("info", "Sizes and quality of a mesh (legacy VTK, VTU, Gmsh, Abaqus; surfaces: STL, OBJ)");
   info->add_option("mesh", mesh, "Mesh file")->required();
 
   std::filesystem::path recorded;

@@ -130,7 +130,7 @@ class Mesh:
 
     @classmethod
     def from_meshio(cls, mesh: meshio.Mesh) -> Mesh:
-        """A mesh of meshio: `sinew.Mesh.from_meshio(meshio.read("arm.inp"))`. Its cell sets become groups; cells of
+        """A mesh of meshio: `sinew.Mesh.from_meshio(meshio.read("arm.bdf"))`. Its cell sets become groups; cells of
         other kinds are left out, with a warning."""
         left_out = sorted(set(mesh.cells_dict) - set(_GMSH))
         if left_out:
@@ -147,8 +147,8 @@ class Mesh:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Mesh:
-        """A mesh of any file that meshio reads: Abaqus, MED, XDMF, ... Legacy VTK, VTU and Gmsh a scene reads by
-        itself, groups and all."""
+        """A mesh of any file that meshio reads: MED, XDMF, Nastran, ... A scene reads legacy VTK, VTU, Gmsh and
+        Abaqus files by itself, with their groups."""
         import meshio
 
         return cls.from_meshio(meshio.read(path))

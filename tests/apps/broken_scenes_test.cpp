@@ -127,7 +127,7 @@ const std::string a_pull =
 const std::vector<Broken> kBroken = {
     // The mesh.
     {"MeshMissing", scene("finger.vtk", "nope.vtk"), "", 6, "nope.vtk", "does not exist", "relative to the scene file"},
-    {"MeshIsAFolder", scene("meshes/finger.vtk", "meshes"), "", 6, "meshes", "is a folder", ".vtk, .vtu or .msh"},
+    {"MeshIsAFolder", scene("meshes/finger.vtk", "meshes"), "", 6, "meshes", "is a folder", ".vtk, .vtu, .msh or .inp"},
     {"MeshEmpty", binary([](const std::string&) { return std::string(); }), "finger.vtk", 0, "", "is empty",
      "legacy VTK"},
     {"MeshOfAnotherKind", binary([](const std::string&) { return "ply\n"; }), "finger.vtk", 0, "\"ply\"",

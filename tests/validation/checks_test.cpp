@@ -112,6 +112,20 @@ TEST(Checks, HangingNodesAreRefused) {
   EXPECT_THAT(fault.value, HasSubstr("(0-based) at [20"));
 }
 
+/// Files of Abaqus: a node set holds the bar, and elements of a hybrid kind are the plain ones.
+TEST(Checks, SetsAndHybridElementsOfAbaqusAreRead) {
+  const runs::LoadedScene plain = load_fault("node_sets", {}),
+                          hybrid = load_fault("node_sets", {"solids.bar.mesh=hybrid_tets.inp"});
+  const SolidModel& bar = plain.model.solids.at(0);
+  EXPECT_EQ(bar.mesh.groups.at("root").nodes.size(), 9u);
+  EXPECT_EQ(bar.mesh.groups.at("body").cells.size(), 144u);
+  EXPECT_FALSE(find_warning(plain.model.warnings, "elements_simplified", "solids.bar.mesh"));
+  const Warning* const told = find_warning(hybrid.model.warnings, "elements_simplified", "solids.bar.mesh");
+  ASSERT_TRUE(told);
+  EXPECT_THAT(told->message, HasSubstr("144 of type C3D4H"));
+  EXPECT_EQ(hybrid.model.solids.at(0).mesh.object, bar.mesh.object);
+}
+
 /// Long, and wound about a bar: its sections stay as far off its path as that is large.
 TEST(Checks, ARodFarOffItsPathIsRefusedWithTheSectionsThatDo) {
   std::string path;

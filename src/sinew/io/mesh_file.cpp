@@ -38,7 +38,7 @@ std::string read_bytes(const std::filesystem::path& path) {
   }
   if (!std::filesystem::is_regular_file(status)) {
     fail_path(file, std::filesystem::is_directory(status) ? "is a folder, not a mesh file" : "is not a regular file",
-              "give the path of a .vtk, .vtu or .msh file, or of an .stl or .obj file for a surface");
+              "give the path of a .vtk, .vtu, .msh or .inp file, or of an .stl or .obj file for a surface");
   }
   std::ifstream stream(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
@@ -226,7 +226,8 @@ solid::Mesh read_mesh(const std::filesystem::path& path) { return parse_mesh(rea
 
 solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
   constexpr const char* formats =
-      "Sinew reads legacy VTK (.vtk), VTU (.vtu) and Gmsh MSH 2.2 and 4.1 (.msh), and surfaces as STL and OBJ";
+      "Sinew reads legacy VTK (.vtk), VTU (.vtu), Gmsh MSH 2.2 and 4.1 (.msh) and Abaqus input (.inp), and surfaces as "
+      "STL and OBJ";
   if (bytes.empty()) fail(name, "", "the mesh file is empty", formats);
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::string_view text = bytes.substr(bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
@@ -245,6 +246,8 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
          "save it again: `gmsh -save -format msh41 in.msh -o out.msh`");
   } else if (first.starts_with("$")) {
     mesh = parse_gmsh(text, name);
+  } else if (first.starts_with("*")) {
+    mesh = parse_abaqus(text, name);
   } else if (first.starts_with("(")) {
     fail(name, in_quotes(first), "is the start of a mesh of ANSYS Fluent, which is not read",
          "export it as Abaqus input (.inp) or VTK, or convert it, for example with meshio");
@@ -254,7 +257,8 @@ solid::Mesh parse_mesh(std::string_view bytes, const std::string& name) {
          "the file is cut short: export the part again");
   } else {
     fail(name, in_quotes(first),
-         "must begin with \"# vtk DataFile Version\", \"<VTKFile\" or \"$MeshFormat\", or be an STL or OBJ file",
+         "must begin with \"# vtk DataFile Version\", \"<VTKFile\", \"$MeshFormat\" or a keyword of Abaqus as "
+         "\"*NODE\", or be an STL or OBJ file",
          formats);
   }
   check_content(mesh, name);

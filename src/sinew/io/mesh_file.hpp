@@ -1,7 +1,7 @@
 // Volume meshes from files: legacy VTK (2.0 to 5.x, ASCII and binary), VTU (ASCII, base64 and raw, with or without
-// zlib) and Gmsh MSH (2.2 and 4.1, ASCII and binary). Tetrahedra with 4 or 10 nodes and hexahedra with 8 are used,
-// faces, lines and points only as parts of groups; all other cells are counted by kind. Surfaces also from STL (ASCII
-// and binary) and OBJ.
+// zlib), Gmsh MSH (2.2 and 4.1, ASCII and binary) and Abaqus or CalculiX input (.inp). Tetrahedra with 4 or 10 nodes
+// and hexahedra with 8 are used, faces, lines and points only as parts of groups; all other cells are counted by kind.
+// Surfaces also from STL (ASCII and binary) and OBJ.
 #pragma once
 
 #include <filesystem>

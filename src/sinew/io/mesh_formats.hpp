@@ -12,6 +12,7 @@ namespace sinew::io {
 solid::Mesh parse_legacy_vtk(std::string_view bytes, const std::string& file);
 solid::Mesh parse_vtu(std::string_view bytes, const std::string& file);
 solid::Mesh parse_gmsh(std::string_view bytes, const std::string& file);
+solid::Mesh parse_abaqus(std::string_view bytes, const std::string& file);
 
 // Surfaces have no word of their own to begin with.
 /// How many bytes a binary STL file has by the number of triangles it tells; 0 if these are fewer, so it is none. Some

@@ -91,6 +91,15 @@ void check_pieces(const solid::Mesh& mesh, const std::string& path, std::vector<
 
 /// What a reader has changed.
 void tell_of_changes(const solid::Mesh& mesh, const std::string& path, std::vector<Warning>& warnings) {
+  std::string types;
+  for (const auto& [type, count] : mesh.simplified)
+    types += (types.empty() ? "" : ", ") + std::to_string(count) + " of type " + type;
+  if (!types.empty())
+    warnings.push_back({.code = "elements_simplified",
+                        .where = path,
+                        .message = "hybrid, reduced and modified elements are read as plain ones, " + types,
+                        .remedy = "nothing where they are fine enough; tetrahedra of 4 nodes lock near Poisson's ratio "
+                                  "0.5, where `order: 2` helps"});
   if (mesh.turned > 0)
     warnings.push_back(
         {.code = "elements_turned",

@@ -50,7 +50,9 @@ struct Mesh {
   std::vector<Triangle> faces;  ///< of a file that is a surface and has no cells
   std::map<std::string, Group> groups;
   std::map<std::string, int> ignored;  ///< other cells of the file: kind ("wedge", "line", ...) and how many
-  int turned = 0;                      ///< cells that were all inside out, and have been mirrored
+  /// Cells read as the plain element of their shape, though the file's type says more: the type, "C3D8R", and how many.
+  std::map<std::string, int> simplified = {};
+  int turned = 0;  ///< cells that were all inside out, and have been mirrored
 };
 
 /// Boundary faces of the cells, outward, each with all its nodes; in the order of the cells: those whose corners are
