@@ -6,13 +6,16 @@
 #include <set>
 
 #include "sinew/commands.hpp"
+#include "sinew/error/input_error.hpp"
 #include "sinew/io/mesh_file.hpp"
 #include "sinew/runs/loaded_scene.hpp"
 #include "sinew/sim/contacts.hpp"
 #include "sinew/sim/load_summary.hpp"
+#include "sinew/sim/modal.hpp"
 #include "sinew/sim/motors.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/sliding_rods.hpp"
+#include "sinew/sim/statics.hpp"
 #include "sinew/solid/mesh_order.hpp"
 #include "sinew/solid/mesh_pieces.hpp"
 #include "sinew/solid/mesh_summary.hpp"
@@ -145,8 +148,40 @@ void print_contact(const Model& model) {
 
 }  // namespace
 
+namespace {
+
+/// At rest, the first step of the run must be able to solve its equations.
+void check_first_solve(const runs::LoadedScene& loaded) {
+  const Model& model = loaded.model;
+  if (model.scene.analysis == Analysis::dynamic) return;
+  Workspace workspace(model);
+  FirstSolve first = first_solve(model, workspace);
+  if (model.scene.analysis == Analysis::modal && first.report.status != Status::singular)
+    first.report = modal_step(model, workspace, initial_state(model)).report;  // there is but one solve
+  if (first.report.status != Status::singular) return;
+  InputFault fault = {
+      .file = loaded.file.path.string(),
+      .line = 0,
+      .path = "analysis",
+      .value = loaded.file.scene.analysis == Analysis::modal ? "modal" : "",
+      .rule = "cannot begin: " + (first.report.detail.empty() ? "nothing resists a motion" : first.report.detail),
+      .remedy = "hold what can move, or see how it moves with `analysis: dynamic`"};
+  if (!first.free.empty()) {
+    const bool is_rod = first.free.front().object.kind == Collider::Kind::rod;
+    fault.path = first.free.front().where + (is_rod ? ".base" : "");
+    fault.rule = "at rest nothing resists motions of " + in_words(first.free);
+    fault.remedy = is_rod ? "leave them out of `base`, hold them by a tie, or see how it moves with `analysis: dynamic`"
+                          : "hold it by a tie or glue, or see how it moves with `analysis: dynamic`";
+  }
+  fault.line = io::line_of(loaded.file, fault.path);
+  throw InputError(fault);
+}
+
+}  // namespace
+
 int check_scene(const std::filesystem::path& scene, const std::vector<std::string>& overrides, bool strict) {
   const runs::LoadedScene loaded = runs::load(io::read_scene(scene, overrides));
+  check_first_solve(loaded);
   const Model& model = loaded.model;
   switch (model.scene.analysis) {
     case Analysis::dynamic:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 import random_scenes
+from random_scenes import soundness
 
 # Some that were wrong once, beside the first ones: throws 52 (a peg went through a rod that was bent round it).
 NUMBERS = {
@@ -26,6 +27,12 @@ def test_random_scenes_end_right_or_say_why(kind: str, program: str) -> None:
         assert verdict.end == "done" or verdict.end.startswith("stopped"), (number, verdict.end)
         assert not verdict.complaints, (number, verdict.complaints)
         assert kind != "faults" or verdict.case.kind in MAY_STOP or verdict.end == "done", (number, verdict.end)
+
+
+def test_check_refuses_what_cannot_begin_and_only_that(program: str) -> None:
+    for number in range(20):
+        _, end, text = soundness.compare(number, program, None)
+        assert "DISAGREE" not in end and "exit" not in end, (number, end, text)
 
 
 def test_the_judge_sees_a_rod_that_passes_a_peg() -> None:

@@ -127,6 +127,17 @@ const std::string a_pull =
 const std::vector<Broken> kBroken = {
     // The mesh.
     {"MeshMissing", scene("finger.vtk", "nope.vtk"), "", 6, "nope.vtk", "does not exist", "relative to the scene file"},
+    {"RodNothingHolds", whole_scene(R"(analysis: static
+time: {step: 1, duration: 1}
+gravity: [0, 0, -9.81]
+rods:
+  arm:
+    path: [[0, 0, 0], [0.1, 0, 0]]
+    base: [y]
+    section: {circle: {radius: 1 mm}}
+    material: {young: 1 MPa, poisson: 0.4, density: 1000}
+)"),
+     "scene.yaml", 7, "rods.arm.base", "at rest nothing resists motions of rods.arm (y)", "leave them out of `base`"},
     {"MeshIsAFolder", scene("meshes/finger.vtk", "meshes"), "", 6, "meshes", "is a folder", ".vtk, .vtu, .msh or .inp"},
     {"MeshEmpty", binary([](const std::string&) { return std::string(); }), "finger.vtk", 0, "", "is empty",
      "legacy VTK"},

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sinew/error/input_error.hpp"
+#include "sinew/sim/statics.hpp"
 #include "support/faults.hpp"
 
 namespace sinew::test {
@@ -110,6 +111,34 @@ TEST(Checks, HangingNodesAreRefused) {
   EXPECT_EQ(fault.path, "solids.a.mesh");
   EXPECT_THAT(fault.rule, HasSubstr("lies on a face of a cell that does not have it"));
   EXPECT_THAT(fault.value, HasSubstr("(0-based) at [20"));
+}
+
+struct AtRest {
+  std::vector<std::string> changes;
+  std::string free;  ///< what nothing resists; empty: the run can begin
+};
+
+/// What the first step at rest cannot solve for is named before the run, by the code that makes it.
+TEST(Checks, WhatNothingResistsAtRestIsNamed) {
+  const std::vector<AtRest> all = {
+      {{"analysis=static"}, ""},
+      {{"analysis=static", "couplings=[]", "contact={pairs: [{between: [arm, ball], off: true}]}"},
+       "bodies.ball (x, y, z, turn_x, turn_y, turn_z)"},
+      {{"couplings=[]", "bodies={}", "rods.arm.base=free"}, "rods.arm (x, y, z"},
+      {{"couplings=[]", "bodies={}", "actuators={push: {rod: arm, force: 1}}"}, "rods.arm (x)"},
+      {{"couplings=[]", "bodies={}", "actuators={push: {rod: arm, displacement: 1 mm}}"}, ""},
+      // Level, its weight does nothing about the hinge at first; it swings down, which a path cannot begin with.
+      {{"couplings=[]", "bodies={}", "rods.arm.base=[turn_z]"}, ""},
+      {{"analysis=static", "couplings=[]", "bodies={}", "rods.arm.base=[turn_z]"}, "rods.arm (turn_z)"},
+      {{"analysis=static", "couplings=[{tie: {rod: arm}}]", "bodies={}", "rods.arm.base=[turn_z]"}, ""},
+  };
+  for (const AtRest& trial : all) {
+    const runs::LoadedScene loaded = load_fault("plain_rod", trial.changes);
+    Workspace workspace(loaded.model);
+    const FirstSolve first = first_solve(loaded.model, workspace);
+    EXPECT_EQ(first.report.status == Status::singular, !trial.free.empty()) << trial.changes[0] << trial.changes.back();
+    EXPECT_THAT(in_words(first.free), HasSubstr(trial.free)) << trial.changes.back();
+  }
 }
 
 /// Files of Abaqus: a node set holds the bar, and elements of a hybrid kind are the plain ones.

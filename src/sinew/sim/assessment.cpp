@@ -16,6 +16,7 @@
 #include "sinew/sim/strained_rods.hpp"
 #include "sinew/sim/touched_rods.hpp"
 #include "sinew/sim/unbalanced.hpp"
+#include "sinew/sim/unresisted.hpp"
 #include "sinew/sim/work.hpp"
 
 namespace sinew {
@@ -244,32 +245,16 @@ void assess_give(const Model& model, const Reduced& reduced, Warnings& warnings)
 /// Bases of rods and bodies that an equilibrium leaves free: they stand where they came by chance. (Those that contacts
 /// press on may be held by these.)
 void assess_free(const Model& model, const Linearization& here, const State& state, Warnings& warnings) {
-  constexpr const char* kAxes = "xyz";
-  const std::vector<int>& unresisted = here.unresisted();
-  for (int i = 0; i < static_cast<int>(model.rods.size()) && !unresisted.empty(); ++i) {
-    const RodModel& rod = model.rods[i];
-    if (is_pressed(state, {Collider::Kind::rod, i})) continue;
-    std::string motions;
-    for (int k = 0; k < rod.rod.base_coordinates(); ++k) {
-      if (std::find(unresisted.begin(), unresisted.end(), rod.unknown + k) == unresisted.end()) continue;
-      const rod::BaseMotion& motion = rod.rod.base[k];
-      motions += std::string(motions.empty() ? "" : ", ") + (motion.turns ? "turn_" : "") + kAxes[motion.axis];
-    }
-    if (motions.empty()) continue;
+  if (here.unresisted().empty()) return;
+  for (const Unresisted& free : unresisted_motions(model, here.unresisted())) {
+    if (is_pressed(state, free.object)) continue;
+    const bool is_rod = free.object.kind == Collider::Kind::rod;
     warnings.add({.code = "free_motion",
-                  .where = "rods." + rod.name,
-                  .message = "nothing resists a motion of its base (" + motions + "): where it rests is chance",
-                  .remedy = "leave that out of its `base`, or hold it by a tie that has this axis"});
-  }
-  for (int i = 0; i < static_cast<int>(model.bodies.size()) && !unresisted.empty(); ++i) {
-    const BodyModel& body = model.bodies[i];
-    if (is_pressed(state, {Collider::Kind::body, i})) continue;
-    const auto own = [&](int unknown) { return unknown >= body.unknown && unknown < body.unknown + 6; };
-    if (std::none_of(unresisted.begin(), unresisted.end(), own)) continue;
-    warnings.add({.code = "free_motion",
-                  .where = "bodies." + body.name,
-                  .message = "nothing resists one of its motions: where it rests is chance",
-                  .remedy = "hold it by a tie that has this axis"});
+                  .where = free.where,
+                  .message = std::string("nothing resists a motion of ") + (is_rod ? "its base (" : "it (") +
+                             free.motions + "): where it rests is chance",
+                  .remedy = is_rod ? "leave that out of its `base`, or hold it by a tie that has this axis"
+                                   : "hold it by a tie that has this axis"});
   }
 }
 

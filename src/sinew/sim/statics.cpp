@@ -15,6 +15,7 @@
 #include "sinew/sim/signals.hpp"
 #include "sinew/sim/step_ends.hpp"
 #include "sinew/sim/unbalanced.hpp"
+#include "sinew/sim/unresisted.hpp"
 #include "sinew/sim/work.hpp"
 
 namespace sinew {
@@ -44,6 +45,10 @@ struct Ramp {
 
 Command nothing(const Model& model) {
   return {std::vector<double>(model.actuators.size(), 0.0), std::vector<double>(model.loads.size(), 0.0)};
+}
+
+Ramp from_nothing(const Model& model, Command to, double time) {
+  return {nothing(model), std::move(to), Vec3::Zero(), model.scene.gravity, 0.0, time};
 }
 
 /// Contexts along a path from a state.
@@ -267,6 +272,44 @@ std::optional<Warning> snapped(Memory& memory, const Between& own) {
 
 std::string percent(double part) { return three_digits(100.0 * part) + " %"; }
 
+/// How the equilibrium that Memory::context describes changes along its path, into Memory::change. False where nothing
+/// resists a motion.
+bool find_tangent(const ContextAt& at, Memory& memory, const Iterate& from, StepReport& report) {
+  Linearization& here = memory.here;
+  here.forget();
+  here.evaluate(memory.context, from.state, report.times);
+  if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail)) return false;
+  const auto solve = [&] {
+    here.solve(memory.increment);
+    change_along(at, memory, from, report.times);
+    return memory.change.reduced.ok;
+  };
+  if (solve()) return true;
+  here.stiffen();
+  return solve();
+}
+
+/// What nothing resists at a state under all that is prescribed, which says what is small.
+std::vector<Unresisted> find_unresisted(Memory& memory, const Ramp& ramp, const State& state) {
+  along(ramp, state)(1.0, memory.context);
+  Linearization& here = memory.here;
+  here.forget();
+  StageTimes times;
+  here.evaluate(memory.context, state, times);
+  std::string failed;
+  if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) return {};
+  here.solve(memory.increment);
+  here.unstable();
+  return unresisted_motions(memory.context.model, here.unresisted());
+}
+
+/// Names it in the report of a step that failed for it.
+void name_unresisted(Memory& memory, const Ramp& ramp, const State& state, StepReport& report) {
+  if (report.status != Status::singular) return;
+  if (const std::string free = in_words(find_unresisted(memory, ramp, state)); !free.empty())
+    report.detail = "nothing resists motions of " + free;
+}
+
 /// One step along a path; its arc and what the next one needs are in the state's `path`. On failure `at` is where it
 /// started from.
 Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const Iterate& from) {
@@ -308,23 +351,9 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
   }
 
   // The tangent of the path here, the way the last step went.
-  Linearization& here = memory.here;
-  here.forget();
-  here.evaluate(context, state, report.times);
   report.status = Status::singular;
-  if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, report.detail))
-    return {from, report};
-  const auto tangent = [&] {
-    here.solve(memory.increment);
-    change_along(at, memory, from, report.times);
-    return memory.change;
-  };
-  Increment change = tangent();
-  if (!change.reduced.ok) {
-    here.stiffen();
-    change = tangent();
-  }
-  if (!change.reduced.ok) return {from, report};
+  if (!find_tangent(at, memory, from, report)) return {from, report};
+  const Increment change = memory.change;
   const Eigen::VectorXd u = measured(model, change);
   const double norm = std::sqrt(u.squaredNorm() + 1.0);
   const double way = state.path.rate == 0.0 || state.path.direction.dot(u) + state.path.rate > 0.0 ? 1.0 : -1.0;
@@ -368,9 +397,12 @@ Reached path_step(const Model& model, Memory& memory, const Ramp& ramp, const It
 
 StepResult static_step(const Model& model, Workspace& workspace, const State& state) {
   const double duration = model.scene.time.duration;
-  const Ramp ramp{nothing(model), command_at(model, duration), Vec3::Zero(), model.scene.gravity, 0.0, duration};
+  const Ramp ramp = from_nothing(model, command_at(model, duration), duration);
   Reached next = path_step(model, workspace.memory(), ramp, {state, state.time / duration});
-  if (!accepted(next.report.status)) return {state, next.report};
+  if (!accepted(next.report.status)) {
+    name_unresisted(workspace.memory(), ramp, state, next.report);
+    return {state, next.report};
+  }
   next.at.state.time = ramp.time(next.at.t);
   if (next.at.t == 1.0) {
     next.at.state.grid = state.grid + 1;
@@ -505,9 +537,40 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   end.report.contact.work = spent.contact.work;
   end.report.contact.cut = spent.contact.cut;
   end.report.warnings.insert(end.report.warnings.end(), snaps.begin(), snaps.end());
-  if (!accepted(end.report.status)) return {state, end.report};
+  if (!accepted(end.report.status)) {
+    name_unresisted(memory, ramp, state, end.report);
+    return {state, end.report};
+  }
   end.at.state.path = {};
   return {std::move(end.at.state), end.report};
+}
+
+FirstSolve first_solve(const Model& model, Workspace& workspace) {
+  Memory& memory = workspace.memory();
+  const bool follows_path = model.scene.analysis == Analysis::statics;
+  const double time = follows_path                                     ? model.scene.time.duration
+                      : model.scene.analysis == Analysis::quasi_static ? model.scene.time.step
+                                                                       : 0.0;
+  const Ramp ramp = from_nothing(model, command_at(model, time), time);
+  const State start = initial_state(model);
+  const double t = follows_path ? 0.0 : 1.0;
+  const ContextAt at = along(ramp, start);
+  at(t, memory.context);
+  memory.alarm = alarm_distance(memory.context);
+  Iterate guess{start, t};
+  NewtonRules rules = whole_steps(model);
+  rules.limit = kMostIterations;
+  if (!follows_path) begin(memory, guess.state);
+  FirstSolve first{land(memory, ramp, start, guess, rules).report, {}};
+  if (follows_path && first.report.status != Status::singular) {
+    at(t, memory.context);
+    if (!find_tangent(at, memory, guess, first.report)) first.report.status = Status::singular;
+  }
+  if (first.report.status != Status::singular) return first;
+  first.free = find_unresisted(memory, ramp, start);
+  // (A pendulum that starts level is one whose weight does nothing at first.)
+  if (!follows_path) first.report = equilibrium_step(model, workspace, ramp.to, start, time).report;
+  return first;
 }
 
 }  // namespace sinew

@@ -7,7 +7,10 @@
 // past limit points, where t turns back.
 #pragma once
 
+#include <vector>
+
 #include "sinew/sim/step.hpp"
+#include "sinew/sim/unresisted.hpp"
 
 namespace sinew {
 
@@ -25,5 +28,14 @@ StepResult static_step(const Model& model, Workspace& workspace, const State& st
 inline constexpr int kMostOfEquilibrium = 64;
 StepResult equilibrium_step(const Model& model, Workspace& workspace, const Command& command, const State& state,
                             double time, int most = kMostOfEquilibrium);
+
+/// The first iterations of the first step of an analysis at rest (`quasi_static`, `static`, `modal`), by the code that
+/// makes it; where their equations cannot be solved, the whole step. Status `singular`: nothing resists a motion, and
+/// `free` has those that are known; any other status says nothing of the step.
+struct FirstSolve {
+  StepReport report;
+  std::vector<Unresisted> free;
+};
+FirstSolve first_solve(const Model& model, Workspace& workspace);
 
 }  // namespace sinew
