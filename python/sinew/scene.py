@@ -588,7 +588,7 @@ class RigidBody(Part):
     sphere: A sphere around the origin; for example {"radius": "10 mm"}.
     cylinder: A cylinder about z; for example {"radius": "10 mm", "length": "50 mm"}.
     capsule: All within a radius of a segment along z; for example {"radius": "5 mm", "length": "30 mm"}.
-    mesh: A closed surface of triangles, in the axes of its file; for example {"file": "part.stl"}.
+    mesh: A surface of triangles, closed or with a thickness, in the axes of its file; for example {"file": "part.stl"}.
     pose: Where its axes are at the start: at its middle, or those of its mesh; for example {"translate": [0, 0, "10
         mm"]}.
     mass: Its mass [kg], instead of density; for example "30 g".
@@ -656,16 +656,19 @@ class CapsuleShape(Part):
 
 @dataclass(kw_only=True)
 class MeshShape(Part):
-    """A closed surface of triangles, in the axes of its file.
+    """A surface of triangles, closed or with a thickness, in the axes of its file.
 
     file: Its triangles (.stl, .obj, or a volume mesh), looked up from the scene's folder; for example "part.stl".
     scale: What its coordinates are multiplied by to be in m; for example 0.001; if left out 1.0.
     hull: The smallest convex body around it instead; for example true; if left out false.
+    thickness: Of a sheet with the surface in its middle, met from both sides; the surface may be open [m]; for example
+        "1 mm"; if left out 0.0.
     """
 
     file: MeshSource
     scale: Quantity | None = None
     hull: bool | None = None
+    thickness: Quantity | None = None
 
 
 @dataclass(kw_only=True)
@@ -676,7 +679,7 @@ class Obstacle(Part):
     sphere: A sphere around the origin; for example {"radius": "10 mm"}.
     cylinder: A cylinder about z; for example {"radius": "10 mm", "length": "50 mm"}.
     capsule: All within a radius of a segment along z; for example {"radius": "5 mm", "length": "30 mm"}.
-    mesh: A closed surface of triangles, in the axes of its file; for example {"file": "part.stl"}.
+    mesh: A surface of triangles, closed or with a thickness, in the axes of its file; for example {"file": "part.stl"}.
     plane: A half-space; given by its surface; for example {"point": [0, 0, 0], "normal": [0, 0, 1]}.
     pose: Where it stands; for example {"translate": [0, 0, "10 mm"]}.
     frame: The frame that carries it; for example "hand".

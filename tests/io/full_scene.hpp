@@ -177,6 +177,7 @@ bodies:
   drum: {cylinder: {radius: 10 mm, length: 50 mm}, mass: 1 kg}
   pill: {capsule: {radius: 5 mm, length: 30 mm}, mass: 1 kg}
   part: {mesh: {file: part.stl, scale: 0.001, hull: true}, density: 1200}
+  cup: {mesh: {file: cup.stl, thickness: 1 mm}, mass: 20 g}
 obstacles:
   floor: {plane: {point: [0, 0, -1 mm], normal: [0, 0, 2]}}
   step: {box: {size: [1, 1, 1]}, pose: {rotate: [0, 0, 90 deg], translate: [1, 0, 0]}, frame: hand}
@@ -184,6 +185,7 @@ obstacles:
   post: {cylinder: {radius: 10 mm, length: 50 mm}}
   rail: {capsule: {radius: 5 mm, length: 30 mm}}
   terrain: {mesh: {file: terrain.obj, scale: 2, hull: true}}
+  tin: {mesh: {file: terrain.obj, thickness: 1 mm}}
 contact:
   friction: 0.4
   restitution: 0.1

@@ -120,7 +120,7 @@ TEST(SceneFile, ReadsRodsAndCouplings) {
 
 TEST(SceneFile, ReadsBodiesAndContact) {
   const Scene scene = parse(bodies_scene).scene;
-  ASSERT_EQ(scene.bodies.size(), 5u);
+  ASSERT_EQ(scene.bodies.size(), 6u);
   const auto& [name, cube] = scene.bodies[0];
   EXPECT_EQ(name, "cube");
   EXPECT_EQ(std::get<BoxShape>(cube.shape).size, Vec3(0.02, 0.03, 0.04));
@@ -139,8 +139,10 @@ TEST(SceneFile, ReadsBodiesAndContact) {
   EXPECT_EQ(part.file, "part.stl");
   EXPECT_EQ(part.scale, 0.001);
   EXPECT_TRUE(part.hull);
+  EXPECT_EQ(part.thickness, 0.0);
+  EXPECT_EQ(std::get<MeshShape>(scene.bodies[5].second.shape).thickness, 0.001);
 
-  ASSERT_EQ(scene.obstacles.size(), 6u);
+  ASSERT_EQ(scene.obstacles.size(), 7u);
   const PlaneShape& floor = std::get<PlaneShape>(scene.obstacles[0].second.shape);
   EXPECT_EQ(floor.point, Vec3(0, 0, -0.001));
   EXPECT_EQ(floor.normal, Vec3(0, 0, 2));

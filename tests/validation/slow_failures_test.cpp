@@ -16,8 +16,7 @@ TEST(SlowFailures, two_meshes) {
   const RecordedRun run = fault("two_meshes");
   EXPECT_EQ(run.recorded.end, RunEnd::stopped);
   EXPECT_EQ(run.failure().status, Status::max_iterations) << run.why();
-  EXPECT_THAT(run.failure().detail, HasSubstr("contacts are too much work"));
-  EXPECT_THAT(run.failure().detail, HasSubstr("of disc and ring; give simpler shapes"));
+  EXPECT_THAT(run.failure().detail, HasSubstr("of disc and ring"));
   EXPECT_LT(run.failure().contact.work, 1.2e11);  // (it was without end)
   EXPECT_TRUE(run.warning("overlap_at_start"));
 }

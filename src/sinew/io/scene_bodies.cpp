@@ -46,13 +46,17 @@ Type<CapsuleShape> capsule() {
 Type<MeshShape> mesh() {
   using M = MeshShape;
   return map<M>(
-      {"a closed surface from a file",
+      {"a surface from a file, closed or with a thickness",
        {field<M>({"file", required, "its triangles (.stl, .obj, or a volume mesh), looked up from the scene's folder",
                   "part.stl"},
                  &M::file, file_name()),
         field<M>({"scale", optional, "what its coordinates are multiplied by to be in m", "0.001"}, &M::scale,
                  quantity(Dimension::number, above(0.0))),
-        field<M>({"hull", optional, "the smallest convex body around it instead", "true"}, &M::hull, boolean())}});
+        field<M>({"hull", optional, "the smallest convex body around it instead", "true"}, &M::hull, boolean()),
+        field<M>(
+            {"thickness", optional,
+             "of a sheet with the surface in its middle, met from both sides; the surface may be open [m]", "1 mm"},
+            &M::thickness, length())}});
 }
 
 Type<PlaneShape> plane() {
@@ -75,7 +79,8 @@ std::vector<Field<T>> shape_fields(Shape T::*where) {
           one("sphere", "a sphere around the origin", "{radius: 10 mm}", sphere()),
           one("cylinder", "a cylinder about z", "{radius: 10 mm, length: 50 mm}", cylinder()),
           one("capsule", "all within a radius of a segment along z", "{radius: 5 mm, length: 30 mm}", capsule()),
-          one("mesh", "a closed surface of triangles, in the axes of its file", "{file: part.stl}", mesh())};
+          one("mesh", "a surface of triangles, closed or with a thickness, in the axes of its file", "{file: part.stl}",
+              mesh())};
 }
 
 Range part() { return {.lower = 0.0, .upper = 1.0}; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sinew/contact/hull.hpp"
+#include "sinew/contact/sheet.hpp"
 #include "sinew/sim/building.hpp"
 #include "sinew/sim/contacts.hpp"
 
@@ -15,11 +16,7 @@ namespace {
 
 using Kind = Collider::Kind;
 
-void require_size(double value, const std::string& path) {
-  require_positive(value, path, "give it in metres, or with a unit: 20 mm");
-  if (!(value > kSmallest && value < kLargest))
-    reject(path, text(value) + " m", "must be between 1e-9 m and 1e6 m", "check its unit");
-}
+constexpr double kThinnest = 1e-4;  ///< of a sheet's size
 
 /// The triangles of a mesh in its own axes [m].
 struct Triangles {
@@ -74,6 +71,21 @@ bool has_part_inside_out(const contact::Mesh& mesh) {
   return false;
 }
 
+void make_sheet(Triangles& own, const MeshShape& mesh, double extent, const std::string& path) {
+  if (mesh.hull)
+    reject(path + ".hull", "true", "is the body around it, which has no thickness", "leave out one of the two");
+  if (!(mesh.thickness > kThinnest * extent && mesh.thickness < extent))
+    reject(path + ".thickness", text(mesh.thickness), "must be between a ten-thousandth of its size and its size",
+           "give the thickness of the sheet in metres, or with a unit, as in `thickness: 1 mm`");
+  try {
+    contact::Sheet sheet = contact::thicken(own.points, std::move(own.triangles), mesh.thickness);
+    own = {std::move(sheet.points), std::move(sheet.triangles)};
+  } catch (const contact::NoSheet& wrong) {
+    reject(path + ".file", mesh.file.string(), wrong.what() + (wrong.at ? " at " + text(*wrong.at) + " m" : ""),
+           "mend the surface there, or give a smaller `thickness`");
+  }
+}
+
 contact::Shape shape_of(const Triangles& own, bool hull) {
   if (!hull) return contact::make_mesh(own.points, own.triangles);
   return contact::Convex{contact::hull({own.points.colwise().begin(), own.points.colwise().end()})};
@@ -121,11 +133,13 @@ struct MakeShape {
     if (!(extent > kSmallest && extent < kLargest))
       reject(own_path + ".scale", text(mesh.scale), "makes the body " + text(extent) + " m large",
              "give the scale that turns mesh coordinates into metres, 0.001 for millimetres");
+    if (mesh.thickness != 0.0) make_sheet(own, mesh, extent, own_path);
     if (const int open = mesh.hull ? 0 : contact::open_edges(own.triangles); open > 0)
       reject(
           own_path + ".file", file,
           "has " + std::to_string(open) + " edges where not exactly two triangles meet, turned the same way",
-          "close the surface and turn all its triangles outward, or write `hull: true` for the convex body around it");
+          "close the surface and turn all its triangles outward, write `hull: true` for the convex body around it, or "
+          "give its `thickness` if it is a sheet");
     try {
       const Vec3 middle = 0.5 * (lower + upper);
       own.points.colwise() -= middle;  // for the sake of its inertia's digits

@@ -39,8 +39,7 @@ std::vector<double> section_ends(const Rod& rod, double length, const std::strin
 /// The shapes at both ends of a part; every dimension positive.
 std::pair<rod::Shape, rod::Shape> shapes(const CrossSection& section, const std::string& path) {
   const auto dimension = [&path](const Taper& taper, const std::string& name) {
-    for (const double value : {taper.start, taper.end})
-      require_positive(value, path + "." + name, "give a length, for example 0.5 mm");
+    for (const double value : {taper.start, taper.end}) require_size(value, path + "." + name);
   };
   if (const auto* circle = std::get_if<Circle>(&section)) {
     dimension(circle->radius, "circle.radius");
@@ -76,10 +75,8 @@ rod::Part make_part(double begin, double end, const CrossSection& section, const
     if (!given->stiffness.isApprox(given->stiffness.transpose(), 1e-9) || llt.info() != Eigen::Success)
       reject(path + ".section.stiffness.matrix", "", "must be symmetric and positive definite",
              "the order is torsion, bending_y, bending_z, elongation, shear_y, shear_z");
-    require_positive(given->radius, path + ".section.stiffness.radius", "give the radius the rod is drawn with");
-    if (!(given->line_density >= 0.0))
-      reject(path + ".section.stiffness.line_density", text(given->line_density), "must not be negative",
-             "0 for a massless rod");
+    require_size(given->radius, path + ".section.stiffness.radius");
+    require_not_negative(given->line_density, path + ".section.stiffness.line_density", "0 for a massless rod");
     part.made = rod::GivenPart{given->stiffness, given->line_density, given->radius};
     return part;
   }
@@ -90,7 +87,7 @@ rod::Part make_part(double begin, double end, const CrossSection& section, const
            "0.4 for nylon, 0.3 for steel");
   for (const auto& [value, name] : {std::pair(material.density, "density"), std::pair(material.viscosity, "viscosity"),
                                     std::pair(material.damping, "damping")}) {
-    if (!(value >= 0.0)) reject(path + ".material." + name, text(value), "must not be negative", "0 leaves it out");
+    require_not_negative(value, path + ".material." + name, "0 leaves it out");
   }
   part.made = rod::SolidPart{start, finish, material.young, material.poisson, material.density, material.viscosity};
   if ((rod::stiffness_at({part}, begin).diagonal().array() <= 0.0).any() ||

@@ -29,6 +29,12 @@ void require_not_negative(double value, const std::string& path, const std::stri
   if (!(value >= 0.0) || !std::isfinite(value)) reject(path, text(value), "must be a finite number, 0 or more", remedy);
 }
 
+void require_size(double value, const std::string& path) {
+  require_positive(value, path, "give it in metres, or with a unit: 20 mm");
+  if (!(value > kSmallest && value < kLargest))
+    reject(path, text(value) + " m", "must be between 1e-9 m and 1e6 m", "check its unit");
+}
+
 int find_frame(const Scene& scene, const std::optional<std::string>& name, const std::string& path) {
   return name ? find(scene.frames, *name, path + ".frame", "frame") : -1;
 }

@@ -42,6 +42,7 @@ Placement stand(const Scene& scene, int frame, const Pose& pose);
 
 /// Lengths beyond these bounds are a slip of units; their squares may not even be numbers.
 constexpr double kSmallest = 1e-9, kLargest = 1e6;  // [m]
+void require_size(double value, const std::string& path);
 
 /// What a region holds of a solid; rejected if that is no node.
 struct Selection {

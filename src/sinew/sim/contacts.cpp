@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/sim/contact_merging.hpp"
+#include "sinew/sim/contact_patches.hpp"
 #include "sinew/sim/contact_search.hpp"
 #include "sinew/sim/contact_way.hpp"
 #include "sinew/sim/curve_contact.hpp"
@@ -356,6 +357,7 @@ void find_contacts(const StepContext& context, State& iterate, ContactRoom& room
            std::abs(speed_along(context, own, start, own.grazed)) * context.h < kSlides * room.thin[own.pair];
   });
   merge_rod_contacts(start, room.thin, found);
+  reduce_patches(start, found);
   iterate.contacts = std::move(found);
   std::vector<Beginning> began;
   began.reserve(iterate.contacts.size());

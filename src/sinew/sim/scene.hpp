@@ -394,6 +394,7 @@ struct MeshShape {
   std::filesystem::path file;  ///< .stl or .obj, or a volume mesh, whose boundary is meant
   double scale = 1.0;          ///< what its coordinates are multiplied by to be in m
   bool hull = false;           ///< the smallest convex body around it instead
+  double thickness = 0.0;      ///< [m] above 0: a sheet, met from both sides, with the surface in its middle
 };
 
 using BodyShape = std::variant<BoxShape, SphereShape, CylinderShape, CapsuleShape, MeshShape>;
