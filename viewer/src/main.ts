@@ -337,6 +337,7 @@ window.sinew = {
   outputs: () => Array.from(latest?.floats("outputs") ?? []),
   project: (x: number, y: number, z: number) => view.project(new THREE.Vector3(x, y, z)),
   csv: () => plots.csv(),
+  trails: () => view.trailLengths(),
 };
 
 const run = document.getElementById("run");

@@ -238,6 +238,7 @@ export class Panel {
         box("edges", look.edges, (value) => hands.look({ edges: value })),
         box("points", look.points, (value) => hands.look({ points: value })),
         box("forces", look.contacts, (value) => hands.look({ contacts: value })),
+        ...(scene.head.outputs.length > 0 ? [box("trails", look.trails, (value) => hands.look({ trails: value }))] : []),
       ),
     );
     return make("details", { open: true }, ...rows);

@@ -6,6 +6,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { palette, table, type MapName } from "./colors";
 import type { FrameMessage, SceneMessage, Vector } from "./message";
 import { RING, arrowsOf, axesShape, bend, bodyShape, label, pointsShape, put, rodShape, solidShape, targetShape, placeCut, type Rod, type Solid } from "./shapes";
+import { Trail } from "./trail";
 
 export interface Look {
   solids: string; // "", "displacement" or a field
@@ -15,6 +16,7 @@ export interface Look {
   edges: boolean;
   points: boolean;
   contacts: boolean;
+  trails: boolean; // the ways of outputs and targets
   section: number; // 0: none, to 1
   sectionAxis: 0 | 1 | 2;
   sectionSide: 1 | -1; // what lies beyond it along the axis is cut away, or what lies before
@@ -44,6 +46,7 @@ export class View {
     edges: true,
     points: true,
     contacts: true,
+    trails: true,
     section: 0,
     sectionAxis: 1,
     sectionSide: -1,
@@ -59,6 +62,7 @@ export class View {
   private bodies: THREE.Group[] = [];
   private targets: THREE.Group[] = [];
   private outputs: THREE.Sprite[] = [];
+  private trails: { outputs: Trail[]; targets: Trail[] } = { outputs: [], targets: [] };
   private letters: THREE.Sprite[] = [];
   private marks = new THREE.Points();
   private arrows = new THREE.LineSegments();
@@ -160,6 +164,10 @@ export class View {
     this.bodies = scene.head.bodies.map((_, i) => bodyShape(scene, i));
     this.targets = scene.head.targets.filter((one) => one.position).map(targetShape);
     this.outputs = scene.head.outputs.map(label);
+    this.trails = {
+      outputs: this.outputs.map(() => new Trail("#2f6db3", 1e-3 * this.size)),
+      targets: this.targets.map(() => new Trail("#d62728", 1e-3 * this.size)),
+    };
     const { axes, names } = axesShape(0.12 * this.size);
     this.letters = names;
     this.marks = pointsShape("#e6e6e6", 4);
@@ -176,6 +184,7 @@ export class View {
     for (const { mesh, edges, cut } of this.solids) this.own.add(mesh, edges, ...cut);
     for (const { mesh } of this.rods) this.own.add(mesh);
     this.own.add(axes, ...this.bodies, ...this.targets, ...this.outputs, ...names);
+    this.own.add(...this.allTrails.map((one) => one.lines));
     this.own.add(this.marks, this.arrows, this.touches, this.hand);
     this.hand.visible = false;
     if (this.box.isEmpty()) this.box.expandByPoint(new THREE.Vector3(...scene.head.middle)).expandByScalar(this.size / 2);
@@ -191,6 +200,7 @@ export class View {
   // Where it is.
 
   show(frame: FrameMessage): void {
+    const leap = this.leaps(frame);
     this.frame = frame;
     this.solids.forEach((one, i) => {
       const shorts = frame.shorts(`solid${i}`);
@@ -209,6 +219,10 @@ export class View {
     const outputs = frame.floats("outputs");
     this.outputs.forEach((one, i) => one.position.set(outputs[3 * i]!, outputs[3 * i + 1]!, outputs[3 * i + 2]!));
     this.placeTargets();
+    const follow = (trails: Trail[], at: (i: number) => THREE.Vector3): void =>
+      trails.forEach((one, i) => one.add(frame.head.time, ...at(i).toArray(), leap));
+    follow(this.trails.outputs, (i) => this.outputs[i]!.position);
+    follow(this.trails.targets, (i) => this.goalPosition(i));
     put(this.marks.geometry, frame.floats("points"));
     const { points, lines } = arrowsOf(frame.floats("contacts"), 0.2 * this.size);
     put(this.touches.geometry, points);
@@ -217,6 +231,22 @@ export class View {
     if (!this.placed) this.preset("corner");
     this.placed = true;
     this.moved = true;
+  }
+
+  private get allTrails(): Trail[] {
+    return [...this.trails.outputs, ...this.trails.targets];
+  }
+
+  /** Points of the trails of outputs, and of targets. */
+  trailLengths(): { outputs: number[]; targets: number[] } {
+    return { outputs: this.trails.outputs.map((one) => one.length), targets: this.trails.targets.map((one) => one.length) };
+  }
+
+  /** Whether somebody has moved the time of a recorded run on: by more than 3 % of its steps, and three of them. */
+  private leaps(frame: FrameMessage): boolean {
+    const times = this.scene!.head.times;
+    if (!times || !this.frame) return false;
+    return Math.abs(frame.head.frame - this.frame.head.frame) > Math.max(3, 0.03 * times.length);
   }
 
   private placeTargets(): void {
@@ -265,6 +295,7 @@ export class View {
     }
     this.marks.visible = look.points;
     this.arrows.visible = this.touches.visible = look.contacts;
+    for (const one of this.allTrails) one.lines.visible = look.trails;
     if (this.frame) this.paint();
     this.moved = true;
   }

@@ -2,6 +2,7 @@
 
 import { expect, test, type Page } from "@playwright/test";
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { join } from "node:path";
 
 import { tickText } from "../src/colors";
@@ -85,6 +86,10 @@ test("the target is dragged, and the tip follows", async ({ page }) => {
     await page.waitForTimeout(20);
   }
   await page.mouse.up();
+  const trails = await page.evaluate(() => window.sinew.trails());
+  expect(trails.targets).toHaveLength(1);
+  expect(trails.targets[0]!).toBeGreaterThan(5);
+  expect(trails.outputs[0]!).toBeGreaterThan(5);
   // The height is free in this scene.
   await page.waitForFunction(() => {
     const [goal, tip] = [window.sinew.goals(), window.sinew.outputs()];
@@ -180,8 +185,11 @@ test("a recorded run scrubs", async ({ page }) => {
   await page.waitForFunction(() => window.sinew.frame().frame === 17);
   expect(await page.evaluate(() => window.sinew.frame().time)).toBeCloseTo(0.17, 9);
   const bent = await page.evaluate(() => window.sinew.outputs());
+  const trail = (): Promise<number> => page.evaluate(() => window.sinew.trails().outputs[0]!);
+  expect(await trail()).toBeGreaterThan(1);
   await timeline.fill("0");
   await page.waitForFunction(() => window.sinew.frame().frame === 0);
+  expect(await trail()).toBe(1); // what is later is forgotten
   expect(await page.evaluate(() => window.sinew.outputs())).not.toEqual(bent);
   await page.waitForFunction(() => !window.sinew.frame().playing);
   await served.stop();
@@ -434,6 +442,50 @@ test("pictures and videos are saved", async ({ page }) => {
   expect(film.readUInt32BE(0)).toBe(0x1a45dfa3); // WebM
   expect(film.length).toBeGreaterThan(5000);
   await served.stop();
+});
+
+test("the token leaves the address, and the page goes on working", async ({ page, context }) => {
+  const served = await Served.start("examples/finger.yaml");
+  await open(page, served.address);
+  const bare = `http://127.0.0.1:${served.port}/`;
+  expect(page.url()).toBe(bare);
+  await page.reload();
+  await page.waitForFunction(() => window.sinew.tally.frames > 2);
+  const second = await context.newPage();
+  await open(second, bare);
+  await open(second, served.address);
+  expect(second.url()).toBe(bare);
+  await served.stop();
+  const again = await Served.start("examples/finger.yaml", "--port", served.port);
+  await page.reload();
+  await page.waitForFunction(() => window.sinew.tally.frames > 2);
+  await again.stop();
+});
+
+test("only pages that are named may frame it", async ({ page, context }) => {
+  const framed = async (...args: string[]): Promise<boolean> => {
+    const served = await Served.start("examples/finger.yaml", ...args);
+    const notebook = createServer((_, answer) => {
+      answer.setHeader("Content-Type", "text/html");
+      answer.end(`<iframe src="${served.address}" width="800" height="600"></iframe>`);
+    });
+    await new Promise<void>((listening) => notebook.listen(8899, "127.0.0.1", listening));
+    // By another name than the page's, so that browsers hold it for another site.
+    await page.goto("http://localhost:8899/");
+    const inside = page.frames()[1]!;
+    const seen = await inside
+      .waitForFunction(() => window.sinew.tally.frames > 2, undefined, { timeout: 15_000 })
+      .then(() => inside.evaluate(() => location.search.length > 0))
+      .catch(() => false);
+    await new Promise((closed) => notebook.close(closed));
+    notebook.closeAllConnections();
+    await served.stop();
+    await context.clearCookies();
+    return seen;
+  };
+  expect(await framed()).toBe(false);
+  expect(await framed("--embed-in", "http://localhost:1")).toBe(false);
+  expect(await framed("--embed-in", "http://localhost:8899")).toBe(true);
 });
 
 test("nobody without the token gets in", async ({ page }) => {

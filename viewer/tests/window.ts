@@ -20,5 +20,6 @@ export interface Window {
     outputs(): number[];
     project(x: number, y: number, z: number): { x: number; y: number };
     csv(): string;
+    trails(): { outputs: number[]; targets: number[] };
   };
 }
