@@ -8,7 +8,7 @@
 namespace sinew::app {
 
 // Exit codes (NOTATION.md).
-inline constexpr int kDone = 0, kBadInput = 2, kNumericalStop = 3, kWarned = 4, kInterrupted = 130;
+inline constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kNumericalStop = 3, kWarned = 4, kInterrupted = 130;
 
 struct RunOptions {
   std::filesystem::path scene;
@@ -37,10 +37,11 @@ struct ViewOptions {
   std::filesystem::path folder;  ///< where files that the scene names are looked for; empty: beside it
   std::vector<std::string> overrides;
   std::string address = "127.0.0.1";
-  int port = 0;       ///< 0: any that is free
-  std::string token;  ///< empty: a random one
-  bool open = false;  ///< a browser
-  int threads = 0;    ///< 0: two, if the machine has them
+  int port = 0;                        ///< 0: any that is free
+  std::string token;                   ///< empty: a random one
+  std::vector<std::string> embedders;  ///< whose pages may show this one in a frame
+  bool open = false;                   ///< a browser
+  int threads = 0;                     ///< 0: two, if the machine has them
 };
 
 int run_scene(const RunOptions& options);

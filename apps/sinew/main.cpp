@@ -1,21 +1,23 @@
 // sinew: simulates soft robots from scene files.
 #include <fcntl.h>
-#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <new>
+#include <regex>
+#include <sstream>
 
 #include "sinew/commands.hpp"
 #include "sinew/error/input_error.hpp"
 #include "sinew/io/append_file.hpp"
+#include "sinew/terminal.hpp"
 
 namespace {
 
-constexpr int kNoStreams = 1;
 constexpr const char* kExamples = R"(
 Examples:
   sinew run examples/finger.yaml -o out/finger        simulate, write tables, ParaView files and a picture
@@ -31,7 +33,8 @@ Examples:
   sinew info finger.vtk                               sizes and quality of a mesh
   sinew schema > sinew.schema.json                    JSON Schema of scene files, for editors
 
-Exit codes: 0 done, 2 bad input, 3 numerical stop (results kept), 4 warnings (with --strict; results kept),
+Exit codes: 0 done; 1 the machine refused (no memory), or an error of Sinew itself; 2 bad input, or something that
+cannot be read or written; 3 numerical stop (results kept); 4 warnings (with --strict; results kept);
 130 interrupted (results kept).)";
 
 /// Standard input, output and errors that are closed lead nowhere from now on: the next file to be opened would take
@@ -39,13 +42,41 @@ Exit codes: 0 done, 2 bad input, 3 numerical stop (results kept), 4 warnings (wi
 void open_standard_streams() {
   for (int descriptor = 0; descriptor <= 2; ++descriptor) {
     if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    if (::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY) != descriptor) std::_Exit(kNoStreams);
+    if (::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY) != descriptor) std::_Exit(sinew::app::kFailed);
   }
+}
+
+/// What a command throws becomes a message and an exit code.
+template <class Command>
+int end_of(const Command& command) {
+  using sinew::app::complain;
+  try {
+    return command();
+  } catch (const sinew::InputError& error) {
+    complain("{}\n", error.what());
+    return sinew::app::kBadInput;
+  } catch (const sinew::io::WriteError& error) {
+    complain("{}\n", error.what());
+    return sinew::app::kBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {
+    complain("{}: cannot be read or written: {}\n    check the path, and who may use it\n", error.path1().string(),
+             error.code().message());
+    return sinew::app::kBadInput;
+  } catch (const std::bad_alloc&) {
+    complain(
+        "sinew: the machine has no memory left for this; what was recorded is kept\n    free memory, or make less "
+        "of it: a coarser mesh, fewer sections, fewer frames\n");
+  } catch (const std::exception& error) {
+    complain("sinew: {}\n    this is an error of Sinew, or the machine refused something; please report it\n",
+             error.what());
+  }
+  return sinew::app::kFailed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  using namespace sinew::app;
   open_standard_streams();
   CLI::App program("Sinew simulates soft robots moved by cables, rods and tubes. All units are SI.", "sinew");
   program.footer(kExamples);
@@ -130,48 +161,55 @@ int main(int argc, char** argv) {
             token.size() >= 16 && token.find_first_not_of("0123456789abcdefghijklmnopqrstuvwxyz") == std::string::npos;
         return plain ? std::string() : std::string("must be 16 or more small letters and digits");
       });
+  view->add_option("--embed-in", viewed.embedders,
+                   "Whose pages may show this one in a frame, as http://localhost:8888; no other page may")
+      ->type_name("ORIGIN")
+      ->check([](const std::string& origin) {
+        static const std::regex kOrigin("[a-z][a-z0-9+.-]*:(//(\\*\\.)?[A-Za-z0-9.-]+(:([0-9]+|\\*))?)?");
+        return std::regex_match(origin, kOrigin)
+                   ? std::string()
+                   : std::string(
+                         "must be a scheme and a host, as http://localhost:8888 or http://localhost:*, or a scheme "
+                         "alone, as vscode-webview:");
+      });
   view->add_flag("--open", viewed.open, "Open a browser");
   view->add_option("--threads", viewed.threads, "Threads that share a step")->check(CLI::Range(1, 64));
 
-  CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of scene files");
+  program.add_subcommand("schema", "Print the JSON Schema of scene files");
 
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_command = [&commands](const char* word) {
     return std::any_of(commands.begin(), commands.end(),
                        [word](const CLI::App* command) { return command->get_name() == word; });
   };
-  if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
-    fmt::print(
-        stderr,
-        "{}: is not a command of sinew\n    the commands are run, view, workspace, check, info, export, schema; see "
-        "sinew --help\n",
-        argv[1]);
-    return sinew::app::kBadInput;
-  }
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? sinew::app::kDone : sinew::app::kBadInput;
-  }
-  try {
-    if (*run) return sinew::app::run_scene(options);
-    if (*workspace) return sinew::app::map_workspace(reach);
-    if (*check) return sinew::app::check_scene(checked, check_overrides, check_strict);
-    if (*info) return sinew::app::describe_mesh(mesh);
+  const int code = end_of([&] {
+    if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
+      complain(
+          "{}: is not a command of sinew\n    the commands are run, view, workspace, check, info, export, schema; see "
+          "sinew --help\n",
+          argv[1]);
+      return kBadInput;
+    }
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      std::ostringstream help;
+      std::ostringstream wrong;
+      const int ends = program.exit(error, help, wrong);
+      write(stdout, help.str());
+      write(stderr, wrong.str());
+      return ends == 0 ? kDone : kBadInput;
+    }
+    if (*run) return run_scene(options);
+    if (*workspace) return map_workspace(reach);
+    if (*check) return check_scene(checked, check_overrides, check_strict);
+    if (*info) return describe_mesh(mesh);
     if (*view) return sinew::app::view(viewed);
-    if (*views)
-      return standalone.empty() ? sinew::app::export_run(recorded)
-                                : sinew::app::export_page(recorded, standalone, frames);
-    if (*schema) return sinew::app::print_schema();
-  } catch (const sinew::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return sinew::app::kBadInput;
-  } catch (const sinew::io::WriteError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return sinew::app::kBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sinew: {}\n", error.what());
-    return 1;
-  }
-  return sinew::app::kBadInput;
+    if (*views) return standalone.empty() ? export_run(recorded) : export_page(recorded, standalone, frames);
+    return print_schema();
+  });
+  const std::string lost = standard_output_failed();
+  if (lost.empty()) return code;
+  complain("standard output: cannot be written: {}\n    free space there, or send it elsewhere\n", lost);
+  return code == kDone ? kBadInput : code;
 }

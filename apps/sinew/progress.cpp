@@ -1,12 +1,14 @@
 #include "sinew/progress.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "sinew/error/printable.hpp"
 
 namespace sinew::app {
 
@@ -21,10 +23,15 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0), std::fmod(seconds, 60.0));
 }
 
+void show(const std::string& line) {
+  std::fputs(line.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
 Progress::Progress(std::string label, double total, bool quiet)
-    : label_(std::move(label)),
+    : label_(printable(label)),
       total_(total),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
@@ -39,18 +46,18 @@ void Progress::update(double done, const std::string& note) {
     shown_ = std::chrono::steady_clock::now();
     constexpr int kWidth = 30;
     const int full = static_cast<int>(part * kWidth);
-    fmt::print(stderr, "\r{} [{}{}] {:3.0f} %  {}  {} left\033[K", label_, std::string(full, '#'),
-               std::string(kWidth - full, '.'), 100.0 * part, note, duration_text(left));
-    std::fflush(stderr);
+    show(fmt::format("\r{} [{}{}] {:3.0f} %  {}  {} left\033[K", label_, std::string(full, '#'),
+                     std::string(kWidth - full, '.'), 100.0 * part, printable(note), duration_text(left)));
   } else if (static_cast<int>(10.0 * part + 1e-9) > tenth_) {
     tenth_ = static_cast<int>(10.0 * part + 1e-9);
-    fmt::print(stderr, "{} {:3d} %  {}  {} left\n", label_, 10 * tenth_, note, duration_text(left));
+    show(fmt::format("{} {:3d} %  {}  {} left\n", label_, 10 * tenth_, printable(note), duration_text(left)));
   }
 }
 
 void Progress::finish(const std::string& note) {
   if (quiet_) return;
-  fmt::print(stderr, "{}{}: {} in {:.1f} s\n", terminal_ ? "\r\033[K" : "", label_, note, seconds_since(start_));
+  show(fmt::format("{}{}: {} in {:.1f} s\n", terminal_ ? "\r\033[K" : "", label_, printable(note),
+                   seconds_since(start_)));
 }
 
 }  // namespace sinew::app

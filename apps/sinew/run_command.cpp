@@ -10,6 +10,7 @@
 #include "sinew/signals.hpp"
 #include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
+#include "sinew/terminal.hpp"
 #include "sinew/threads/interruption.hpp"
 
 namespace sinew::app {
@@ -22,24 +23,23 @@ void print_targets(const Model& model, const State& state, const runs::Digest& d
   std::size_t reached = 0;
   for (const auto& [targets, steps] : digest.targets)
     reached += targets.starts_with("reached") ? static_cast<std::size_t>(steps) : 0;
-  fmt::print("Targets reached in {} of {} steps; at the end {}\n", reached, digest.rows.size() - 1,
-             digest.last.targets);
+  say("Targets reached in {} of {} steps; at the end {}\n", reached, digest.rows.size() - 1, digest.last.targets);
   Eigen::VectorXd errors;
   effector_errors(model, state, goal_at(model, state.time), errors);
   for (std::size_t i = 0; i < model.effectors.size(); ++i) {
     const EffectorModel& effector = model.effectors[i];
     const Measure measure = measure_of(model, effector);
-    fmt::print("  {}: {:.3g} {} off", model.outputs[effector.output].name, error_of(effector, errors) / measure.shown,
-               measure.name);
+    say("  {}: {:.3g} {} off", model.outputs[effector.output].name, error_of(effector, errors) / measure.shown,
+        measure.name);
     const runs::WorstError& worst = digest.worst[i];
     if (!worst.targets.empty())
-      fmt::print("; at most {:.3g} {}, at t = {:.4g} s: {}", worst.error / measure.shown, measure.name, worst.time,
-                 worst.targets);
-    fmt::print("\n");
+      say("; at most {:.3g} {}, at t = {:.4g} s: {}", worst.error / measure.shown, measure.name, worst.time,
+          worst.targets);
+    say("\n");
   }
 }
 
-void warn(const Warning& warning) { fmt::print(stderr, "warning: {}\n", to_string(warning)); }
+void warn(const Warning& warning) { complain("warning: {}\n", to_string(warning)); }
 
 /// After an interruption tables are written as far as this allows.
 constexpr std::chrono::milliseconds kTimeForTables{150};
@@ -99,21 +99,21 @@ int run_and_record(const runs::LoadedScene& loaded, const State& start, const st
 
   const WrittenViews written = write_views(folder, loaded, last, summary, before.size(), progress);
   if (end == RunEnd::stopped) {
-    fmt::print(stderr, "Stopped at {}: {}{}\n    {}\n", when(model, last), to_string(summary.failure.status),
-               summary.failure.detail.empty() ? "" : " (" + summary.failure.detail + ")",
-               explain(summary.failure.status));
+    complain("Stopped at {}: {}{}\n    {}\n", when(model, last), to_string(summary.failure.status),
+             summary.failure.detail.empty() ? "" : " (" + summary.failure.detail + ")",
+             explain(summary.failure.status));
   }
   if (!written.whole) {
-    fmt::print(stderr,
-               "Interrupted at {}: the recording is whole, pictures and ParaView files were left out.\n    Go on with: "
-               "sinew run --resume {}\n    Or look at what there is: sinew export {}\n",
-               when(model, last), folder.string(), folder.string());
+    complain(
+        "Interrupted at {}: the recording is whole, pictures and ParaView files were left out.\n    Go on with: "
+        "sinew run --resume {}\n    Or look at what there is: sinew export {}\n",
+        when(model, last), folder.string(), folder.string());
   }
   if (!options.quiet && !written.files.empty()) {
-    fmt::print("Results in {}/\n", folder.string());
-    for (const std::string& file : written.files) fmt::print("  {}\n", file);
+    say("Results in {}/\n", folder.string());
+    for (const std::string& file : written.files) say("  {}\n", file);
   }
-  if (options.profile) fmt::print("{}", runs::profile(summary));
+  if (options.profile) say("{}", runs::profile(summary));
   if (end == RunEnd::stopped) return kNumericalStop;
   if (!written.whole) return kInterrupted;
   return options.strict && written.warnings > 0 ? kWarned : kDone;
@@ -128,12 +128,12 @@ int resume(const RunOptions& options) {
   const State state = empty ? initial_state(model) : unpack(model, recording.steps.back().state);
   const bool stepped = state.grid >= grid_steps(model.scene) && !recording.torn;
   if (stepped && runs::views_complete(options.resume)) {
-    fmt::print("The run in {} is complete, up to {}.\n", options.resume.string(), when(model, state));
+    say("The run in {} is complete, up to {}.\n", options.resume.string(), when(model, state));
     return kDone;
   }
   if (!options.quiet)
-    fmt::print("{} steps are recorded in {}, up to {}; {}.\n", empty ? 0 : count - 1, options.resume.string(),
-               when(model, state), stepped ? "tables and pictures are written" : "the run goes on from there");
+    say("{} steps are recorded in {}, up to {}; {}.\n", empty ? 0 : count - 1, options.resume.string(),
+        when(model, state), stepped ? "tables and pictures are written" : "the run goes on from there");
   io::RecordingWriter writer = io::RecordingWriter::append_to(path);
   if (empty) writer.append(runs::recorded(model, state, StepReport{}));
   if (!stepped) runs::remove_views(options.resume);
@@ -165,8 +165,8 @@ int export_run(const std::filesystem::path& folder) {
   const bool whole = !recording.steps.empty() && run_whole(loaded.model.scene, recording.steps.back().time);
   summary.warnings = runs::warnings_before(loaded.model);
   summary.end = whole ? "done" : "unfinished";
-  fmt::print("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "", count,
-             count == 0 ? 0.0 : recording.steps.back().time);
+  say("{}{} steps up to t = {:.6g} s\n", recording.torn ? "The recording breaks off; kept " : "", count,
+      count == 0 ? 0.0 : recording.steps.back().time);
   note_signals();
   const threads::Interruption interruption(signalled);
   try {
@@ -174,9 +174,9 @@ int export_run(const std::filesystem::path& folder) {
     const runs::Digest digest = runs::digest(loaded.model, summary, recording.header.signal_names, steps);
     const std::vector<std::string> files =
         runs::write_views(folder, {loaded, recording.header, steps, summary, digest});
-    for (const std::string& file : files) fmt::print("  {}\n", file);
+    for (const std::string& file : files) say("  {}\n", file);
   } catch (const threads::Interrupted&) {
-    fmt::print(stderr, "Interrupted: not all was written. Do it again with: sinew export {}\n", folder.string());
+    complain("Interrupted: not all was written. Do it again with: sinew export {}\n", folder.string());
     return kInterrupted;
   }
   return kDone;

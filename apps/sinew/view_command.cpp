@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netdb.h>
@@ -17,6 +17,7 @@
 #include "sinew/live/server.hpp"
 #include "sinew/live/stage.hpp"
 #include "sinew/runs/record.hpp"
+#include "sinew/terminal.hpp"
 
 namespace sinew::app {
 
@@ -77,26 +78,27 @@ int serve(const ViewOptions& options, const Model& model, const Make& make) {
   };
   behind.read = [&model](std::string_view text) { return live::read_request(text, model); };
   behind.take = [&](const live::Request& request) { stage->take(request); };
-  behind.report = [](const std::string& text) { fmt::print(stderr, "{}\n", text); };
+  behind.report = [](const std::string& text) { complain("{}\n", text); };
   live::Place place{options.address, options.port, options.token.empty() ? live::random_token() : options.token};
+  if (!options.embedders.empty()) place.frame_ancestors = fmt::format("{}", fmt::join(options.embedders, " "));
   {
     const std::lock_guard lock(mutex);
     server = std::make_unique<live::Server>(place, std::move(behind));
   }
   if (!live::is_loopback(place.address))
-    fmt::print(stderr,
-               "warning: whoever reaches {} and knows the address below can see and move this robot; what is sent is "
-               "not encrypted. Better leave --bind out and use: ssh -L {}:127.0.0.1:{} this-machine\n",
-               place.address, server->port(), server->port());
+    complain(
+        "warning: whoever reaches {} and knows the address below can see and move this robot; what is sent is "
+        "not encrypted. Better leave --bind out and use: ssh -L {}:127.0.0.1:{} this-machine\n",
+        place.address, server->port(), server->port());
   const std::string host = address_of(place.address);
   const std::string address =
       fmt::format("http://{}:{}/?token={}", host.find(':') == std::string::npos ? host : "[" + host + "]",
                   server->port(), place.token);
-  fmt::print("Open {}\nCtrl-C ends it.\n", address);
+  say("Open {}\nCtrl-C ends it.\n", address);
   std::fflush(stdout);
   if (options.open && std::getenv("DISPLAY") &&
       std::system(fmt::format("xdg-open '{}' >/dev/null 2>&1 &", address).c_str()) != 0)
-    fmt::print(stderr, "the browser could not be started; open the address yourself\n");
+    complain("the browser could not be started; open the address yourself\n");
   wait_for_the_end(signals);
   const std::lock_guard lock(mutex);
   server.reset();
@@ -125,7 +127,7 @@ int view(const ViewOptions& options) {
   const std::filesystem::path folder = options.folder.empty() ? options.what.parent_path() : options.folder;
   const runs::LoadedScene loaded =
       runs::load(io::parse_scene(io::read_text(options.what), options.what, folder, options.overrides));
-  for (const Warning& warning : loaded.model.warnings) fmt::print(stderr, "warning: {}\n", to_string(warning));
+  for (const Warning& warning : loaded.model.warnings) complain("warning: {}\n", to_string(warning));
   return serve(options, loaded.model, [&](live::OnFrame on_frame) {
     return std::make_unique<live::Simulation>(
         loaded.model, options.threads > 0 ? options.threads : runs::usual_threads(), std::move(on_frame));
@@ -142,7 +144,7 @@ int export_page(const std::filesystem::path& folder, const std::filesystem::path
   const std::string html = live::standalone_page(replay, frames);
   io::AppendFile out(file, io::AppendFile::Start::empty);
   out.append(html);
-  fmt::print("{}: plays by itself, {:.1f} MB\n", file.string(), static_cast<double>(html.size()) * 1e-6);
+  say("{}: plays by itself, {:.1f} MB\n", file.string(), static_cast<double>(html.size()) * 1e-6);
   return kDone;
 }
 

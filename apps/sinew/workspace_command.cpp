@@ -15,6 +15,7 @@
 #include "sinew/sim/reach.hpp"
 #include "sinew/sim/targets.hpp"
 #include "sinew/sim/view.hpp"
+#include "sinew/terminal.hpp"
 #include "sinew/threads/interruption.hpp"
 
 namespace sinew::app {
@@ -114,8 +115,8 @@ int map_workspace(const WorkspaceOptions& options) {
   }
   progress.finish(fmt::format("{} equilibria of {}, {} within all limits", found, tried, within));
   if (found < tried)
-    fmt::print(stderr, "warning: {} of {} equilibria were not found; their rows in workspace.csv say why\n",
-               tried - found, tried);
+    complain("warning: {} of {} equilibria were not found; their rows in workspace.csv say why\n", tried - found,
+             tried);
   const bool interrupted = signalled(), draws = !interrupted && !picture.cloud.empty();
   if (draws) {
     Snapshot rest = snapshot(model, initial_state(model), "rest");
@@ -127,9 +128,8 @@ int map_workspace(const WorkspaceOptions& options) {
     io::draw_picture(options.output / "workspace.png", rest, rest, picture);
   }
   if (!options.quiet) {
-    fmt::print("Results in {}/\n  workspace.csv      motors and outputs of every equilibrium\n",
-               options.output.string());
-    if (draws) fmt::print("  workspace.png      where {} was brought\n", model.outputs[shown->output].name);
+    say("Results in {}/\n  workspace.csv      motors and outputs of every equilibrium\n", options.output.string());
+    if (draws) say("  workspace.png      where {} was brought\n", model.outputs[shown->output].name);
   }
   return interrupted ? kInterrupted : found > 0 ? kDone : kNumericalStop;
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import html
+import json
 import os
 import re
 import shutil
@@ -13,9 +14,10 @@ import tempfile
 import threading
 import warnings
 import webbrowser
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from sinew import _engine
 from sinew._engine import Run
@@ -92,14 +94,18 @@ def show(
     browser: bool | None = None,
     port: int = 0,
     height: int = 600,
+    embed_in: Sequence[str] | None = None,
 ) -> Shown:
     """Opens the page of a scene, live, or of a run, to be played: drag targets, pull at bodies, move motors.
 
     what: a scene, its file, the folder of a run, or a run in memory.
     browser: opens one; if left out, unless this is a notebook, where the value of a cell shows the page in it.
-    height: [px] in a notebook."""
+    height: [px] in a notebook.
+    embed_in: origins of pages that may show it in a frame, as "https://hub.example:8000"; if left out, the notebook's where
+    that is known, else those of this machine and of VS Code."""
     folder: tempfile.TemporaryDirectory[str] = tempfile.TemporaryDirectory(prefix="sinew-show-")
     arguments = [f"--port={port}", *(f"--set={own}" for own in assignments(changes))]
+    arguments += [f"--embed-in={origin}" for origin in (_notebook_origins() if embed_in is None else embed_in)]
     if isinstance(what, Run):
         place = Path(folder.name) / "run"
         what.save(place)
@@ -131,6 +137,25 @@ def _renamed(value: Any, names: Mapping[str, str]) -> Any:
     if isinstance(value, list):
         return [_renamed(own, names) for own in value]
     return names.get(value, value) if isinstance(value, str) else value
+
+
+def _notebook_origins() -> list[str]:
+    """Where the notebook that this is the kernel of is opened from: a Jupyter server names its process to its kernels, and
+    writes its address into a file."""
+    local = ["http://localhost:*", "http://127.0.0.1:*", "vscode-webview:", "vscode-file:"]
+    server = os.environ.get("JPY_PARENT_PID", "")
+    try:
+        from jupyter_core.paths import jupyter_runtime_dir  # type: ignore[import-not-found, unused-ignore]
+
+        facts = json.loads((Path(jupyter_runtime_dir()) / f"jpserver-{server}.json").read_text(encoding="utf-8"))
+        address = urlsplit(str(facts["url"]))
+        port = address.port
+    except (ImportError, OSError, ValueError, KeyError, TypeError):
+        return local
+    if not re.fullmatch(r"[A-Za-z0-9.-]+", address.hostname or "") or address.scheme not in ("http", "https"):
+        return local
+    hosts = {"localhost", "127.0.0.1", address.hostname}
+    return [f"{address.scheme}://{host}:{port}" if port else f"{address.scheme}://{host}" for host in sorted(hosts)]
 
 
 def _in_notebook() -> bool:

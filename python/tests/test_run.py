@@ -263,10 +263,34 @@ def test_what_is_shown_is_served(kind: str, finger: Path, tmp_path: Path, progra
         assert "iframe" in page._repr_html_() and page.address in repr(page)
         with urlopen(page.address) as answer:
             assert b"<title>Sinew</title>" in answer.read()
+            assert "frame-ancestors http://localhost:* " in answer.headers["Content-Security-Policy"]
         with pytest.raises(HTTPError, match="403"):
             urlopen(page.address[:-1])
     with pytest.raises(OSError):
         urlopen(page.address)
+
+
+def test_the_notebook_alone_may_frame_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import types
+
+    from sinew.showing import _notebook_origins
+
+    local = ["http://localhost:*", "http://127.0.0.1:*", "vscode-webview:", "vscode-file:"]
+    paths = types.SimpleNamespace(jupyter_runtime_dir=lambda: str(tmp_path))
+    monkeypatch.setitem(sys.modules, "jupyter_core", types.SimpleNamespace(paths=paths))
+    monkeypatch.setitem(sys.modules, "jupyter_core.paths", paths)
+    monkeypatch.setenv("JPY_PARENT_PID", "123")
+    assert _notebook_origins() == local  # no such server
+    for text, origins in (
+        ('{"url": "http://localhost:8888/lab"}', ["http://127.0.0.1:8888", "http://localhost:8888"]),
+        ('{"url": "https://hub.example/user/x/"}', ["https://127.0.0.1", "https://hub.example", "https://localhost"]),
+        ('{"url": "http://a b;c/"}', local),
+        ('{"url": 3}', local),
+        ("[]", local),
+        ("not JSON", local),
+    ):
+        (tmp_path / "jpserver-123.json").write_text(text)
+        assert _notebook_origins() == origins, text
 
 
 def test_what_cannot_be_shown_is_told(tmp_path: Path, program: str) -> None:

@@ -55,10 +55,12 @@ class PageServer : public testing::Test {
     return own;
   }
 
-  http::response<http::string_body> get(const std::string& target, const std::string& host) {
+  using Fields = std::vector<std::pair<std::string, std::string>>;
+  http::response<http::string_body> get(const std::string& target, const std::string& host, const Fields& fields = {}) {
     tcp::socket own = socket();
     http::request<http::empty_body> request(http::verb::get, target, 11);
     request.set(http::field::host, host);
+    for (const auto& [name, value] : fields) request.set(name, value);
     http::write(own, request);
     beast::flat_buffer buffer;
     http::response<http::string_body> response;
@@ -142,6 +144,83 @@ TEST_F(PageServer, RefusesWhoDoesNot) {
   EXPECT_THROW(come(kToken, "", "evil.example"), beast::system_error);
   EXPECT_NO_THROW(come(kToken, "http://" + host_));
   EXPECT_EQ(reports().size(), 8u);
+}
+
+TEST_F(PageServer, AWindowGoesOnWithACookieAndWithoutTheToken) {
+  const auto sent_on = get("/?token=" + kToken, host_, {{"Sec-Fetch-Dest", "document"}});
+  EXPECT_EQ(sent_on.result_int(), 303u);
+  EXPECT_EQ(sent_on[http::field::location], "/");
+  const std::string port = std::to_string(server_->port());
+  EXPECT_EQ(sent_on[http::field::set_cookie], "sinew_" + port + "=" + kToken + "; Path=/; HttpOnly; SameSite=Lax");
+  const std::string cookie = "sinew_" + port + "=" + kToken;
+  EXPECT_EQ(get("/", host_, {{"Cookie", cookie}}).result_int(), 200u);
+  EXPECT_EQ(get("/", host_, {{"Cookie", "theme=dark;  " + cookie + "; other=1"}}).result_int(), 200u);
+  EXPECT_EQ(get("/", "localhost:9", {{"Cookie", "sinew_9=" + kToken}}).result_int(), 200u);  // by a tunnel
+  for (const std::string& wrong :
+       {"sinew_" + port + "=0123456789abcdee", "sinew_" + port + "=", "sinew_" + port, "sinew_9=" + kToken,
+        "x" + cookie, "sinew_" + port + "1=" + kToken, cookie + "0", std::string(";;; ; ="), std::string()})
+    EXPECT_EQ(get("/", host_, {{"Cookie", wrong}}).result_int(), 403u) << wrong;
+  // A token in the address alone is judged, so that who opens a wrong one is told.
+  EXPECT_EQ(get("/?token=0123456789abcdee", host_, {{"Cookie", cookie}}).result_int(), 403u);
+  EXPECT_EQ(get("/", "evil.example:" + port, {{"Cookie", cookie}}).result_int(), 403u);
+  // A frame keeps its address; so does who is no browser. Browsers in a network tell no destination.
+  EXPECT_EQ(get("/?token=" + kToken, host_, {{"Sec-Fetch-Dest", "iframe"}, {"Accept", "text/html"}}).result_int(),
+            200u);
+  EXPECT_EQ(get("/?token=" + kToken, host_, {{"Accept", "*/*"}}).result_int(), 200u);
+  EXPECT_EQ(get("/?token=" + kToken, host_, {{"Accept", "text/html,*/*"}}).result_int(), 303u);
+  // The cookie of a page of another port does not let that page look on.
+  Page page(socket());
+  page.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
+    request.set(http::field::cookie, cookie);
+    request.set(http::field::origin, "http://127.0.0.1:1");
+  }));
+  EXPECT_THROW(page.handshake(host_, "/live"), beast::system_error);
+  Page ours(socket());
+  ours.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
+    request.set(http::field::cookie, cookie);
+    request.set(http::field::origin, "http://" + host_);
+  }));
+  EXPECT_NO_THROW(ours.handshake(host_, "/live"));
+  // What is too long is answered.
+  EXPECT_EQ(get("/", host_, {{"Cookie", std::string(40'000, 'a')}}).result_int(), 431u);
+}
+
+TEST_F(PageServer, SaysNotWhatItIsAndWhoMayFrameIt) {
+  const auto answer = get("/?token=" + kToken, host_);
+  EXPECT_EQ(answer.count(http::field::server), 0u);
+  EXPECT_THAT(std::string(answer["Content-Security-Policy"]), HasSubstr("; frame-ancestors 'none'"));
+  Page page(socket());
+  websocket::response_type shaken;
+  page.handshake(shaken, host_, "/live?token=" + kToken);
+  EXPECT_EQ(shaken[http::field::server], "");
+
+  Behind behind;
+  behind.page = "the page";
+  Place place{"127.0.0.1", 0, kToken, "http://localhost:8888"};
+  server_ = std::make_unique<Server>(place, behind);
+  const auto framed = get("/?token=" + kToken, host_, {{"Accept", "text/html"}});
+  EXPECT_EQ(framed.result_int(), 200u);  // it may be in a frame
+  EXPECT_THAT(std::string(framed["Content-Security-Policy"]), HasSubstr("; frame-ancestors http://localhost:8888"));
+}
+
+TEST_F(PageServer, RequestsThatAreNeverEndedHoldNobody) {
+  const auto page = come();
+  EXPECT_EQ(next(*page), "scene");
+  std::vector<tcp::socket> half;
+  for (int i = 0; i < 200; ++i) {
+    half.push_back(socket());
+    boost::asio::write(half.back(), boost::asio::buffer("GET /?token=" + kToken + " HTTP/1.1\r\nHost: loc"));
+  }
+  // A page opens at once, and another goes on.
+  for (int i = 1; i <= 20; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(get("/?token=" + kToken, host_).result_int(), 200u);
+    EXPECT_EQ(next(*come()), "scene");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+    publish(i);
+    EXPECT_EQ(next(*page), std::to_string(i));
+    say(*page, R"({"do": "ack", "frame": )" + std::to_string(i) + "}");
+  }
 }
 
 TEST_F(PageServer, SendsTheSceneThenFramesAsTheyAreDrawn) {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "sinew/error/printable.hpp"
+
 namespace sinew {
 
 std::string to_string(const InputFault& fault) {
@@ -20,7 +22,7 @@ std::string to_string(const InputFault& fault) {
   append(fault.value, fault.path.empty() ? ": " : " = ");
   append(fault.rule, ": ");
   if (!fault.remedy.empty()) text += "\n    " + fault.remedy;
-  return text;
+  return printable(text, true);
 }
 
 InputError::InputError(InputFault fault) : std::runtime_error(to_string(fault)), fault_(std::move(fault)) {}

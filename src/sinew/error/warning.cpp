@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sinew/error/printable.hpp"
+
 namespace sinew {
 
 namespace {
@@ -26,7 +28,7 @@ std::string to_string(const Warning& warning) {
     text += when;
   }
   if (!warning.remedy.empty()) text += "; " + warning.remedy;
-  return text;
+  return printable(text);
 }
 
 std::vector<std::string> to_strings(const std::vector<Warning>& warnings) {

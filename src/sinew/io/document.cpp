@@ -181,10 +181,14 @@ int line_of(const Entry& entry) { return entry.value.kind == Node::Kind::scalar 
 
 std::string read_text(const std::filesystem::path& file) {
   const std::string name = file.string();
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
-    throw InputError(
-        {.file = name, .line = 0, .path = {}, .value = {}, .rule = "does not exist", .remedy = "check the path"});
+  std::error_code unknown, ignored;
+  if (!std::filesystem::exists(file, unknown)) {
+    throw InputError({.file = name,
+                      .line = 0,
+                      .path = {},
+                      .value = {},
+                      .rule = unknown ? "cannot be looked for: " + unknown.message() : "does not exist",
+                      .remedy = "check the path"});
   }
   if (std::filesystem::is_directory(file, ignored)) {
     throw InputError({.file = name,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "sinew/error/printable.hpp"
 #include "sinew/io/document.hpp"
 
 namespace sinew::io {
@@ -116,14 +117,10 @@ std::string write_document(const Node& node) {
 }
 
 std::string show(const std::string& text, std::size_t longest) {
-  std::string out = text.substr(0, longest + 1);
-  for (char& c : out) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';  // nothing that could disturb a terminal
-  }
-  if (out.size() <= longest) return out;
+  if (text.size() <= longest) return printable(text);
   std::size_t end = longest;
-  while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0u) == 0x80u) --end;  // not inside a character
-  return out.substr(0, end) + "...";
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;  // not inside a character
+  return printable(std::string_view(text).substr(0, end)) + "...";
 }
 
 std::string show(const Node& node, std::size_t longest) {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -34,14 +33,21 @@ std::string read_bytes(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    fail_path(file, "the mesh file does not exist", "check the path; in a scene it is relative to the scene file");
+    const bool unknown = status.type() == std::filesystem::file_type::none;  // a name that is too long, say
+    fail_path(file, unknown ? "the mesh file cannot be looked for: " + error.message() : "the mesh file does not exist",
+              "check the path; in a scene it is relative to the scene file");
   }
   if (!std::filesystem::is_regular_file(status)) {
     fail_path(file, std::filesystem::is_directory(status) ? "is a folder, not a mesh file" : "is not a regular file",
               "give the path of a .vtk, .vtu, .msh or .inp file, or of an .stl or .obj file for a surface");
   }
   std::ifstream stream(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string bytes;
+  std::array<char, 1 << 16> part{};
+  do {
+    stream.read(part.data(), part.size());
+    bytes.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  } while (stream);
   if (!stream.is_open() || stream.bad()) fail_path(file, "the mesh file cannot be read", "check who may read it");
   return bytes;
 }

@@ -13,7 +13,7 @@
 namespace sinew::io {
 
 /// Text of an unstructured grid (.vtu) of a solid: its cells at their present place; point data `displacement` [m];
-/// cell data `von_mises` [Pa] and the snapshot's fields (`stress` [Pa], `strain`, `volume_ratio`, `material`). Every
+/// cell data `von_mises` [Pa] and the snapshot's fields (`stress` [Pa], `strain`, `volume_ratio`, `least_volume_ratio`, `material`). Every
 /// number is written with all its bits (base64).
 std::string vtu_text(const SolidSnapshot& solid, double time);
 

@@ -12,8 +12,10 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <deque>
+#include <list>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <set>
 #include <thread>
@@ -32,10 +34,12 @@ using Error = beast::error_code;
 
 namespace {
 
-constexpr std::size_t kAhead = 2;                 ///< frames sent that have not been drawn yet
-constexpr std::chrono::seconds kPatience{10};     ///< for a request
-constexpr int kReported = 50;                     ///< refusals that are told, so that none fills a disk
-constexpr std::chrono::milliseconds kPause{100};  ///< before the next visitor, where none can be let in
+constexpr std::size_t kAhead = 2;              ///< frames sent that have not been drawn yet
+constexpr std::chrono::seconds kPatience{10};  ///< for a request
+constexpr std::size_t kMostVisits = 4 * Server::kMostPages;
+constexpr std::size_t kLongestHeader = 32 * 1024;  ///< browsers send the cookies of all ports of a host
+constexpr int kReported = 50;                      ///< refusals that are told, so that none fills a disk
+constexpr std::chrono::milliseconds kPause{100};   ///< before the next visitor, where none can be let in
 
 /// "localhost:8000" without the port.
 std::string host_of(std::string_view authority) {
@@ -52,10 +56,32 @@ bool same(std::string_view a, std::string_view b) {
   return off == 0;
 }
 
-/// The value of `token` in "/live?token=...".
-std::string_view token_of(std::string_view target) {
+/// The value of `token` in "/live?token=...", if there is one.
+std::optional<std::string_view> token_of(std::string_view target) {
   const std::size_t at = target.find("?token=");
-  return at == std::string_view::npos ? std::string_view() : target.substr(at + 7);
+  return at == std::string_view::npos ? std::nullopt : std::optional(target.substr(at + 7));
+}
+
+/// What cookie has the token: browsers share cookies among all ports of a host, so the port is in its name.
+std::string cookie_name(std::string_view authority) {
+  std::string name = "sinew_";
+  for (const char letter : authority.substr(host_of(authority).size()))
+    if (letter >= '0' && letter <= '9') name += letter;
+  return name;
+}
+
+/// Whether "a=1; b=2" has a cookie of this name and value.
+bool has_cookie(std::string_view cookies, const std::string& name, std::string_view value) {
+  bool found = false;
+  while (!cookies.empty()) {
+    const std::size_t end = std::min(cookies.find(';'), cookies.size());
+    std::string_view cookie = cookies.substr(0, end);
+    cookies.remove_prefix(std::min(end + 1, cookies.size()));
+    cookie.remove_prefix(std::min(cookie.find_first_not_of(' '), cookie.size()));
+    const bool named = cookie.size() > name.size() && cookie.starts_with(name) && cookie[name.size()] == '=';
+    if (named && same(cookie.substr(name.size() + 1), value)) found = true;
+  }
+  return found;
 }
 
 std::string_view text_of(beast::string_view own) { return {own.data(), own.size()}; }
@@ -102,6 +128,9 @@ struct Server::Own {
   void tell_shown();
   /// Why a visitor may not come in; empty: may.
   std::string refusal(const HttpRequest& request, bool live) const;
+  bool knows_token(const HttpRequest& request) const;
+  /// Whether a browser opens the page in a window of its own, by an address with the token.
+  bool opens_window(const HttpRequest& request) const;
   void report(const std::string& text) {
     if (++reported > kReported) return;
     if (behind.report) behind.report(text + (reported == kReported ? " (and so on: no more is told)" : ""));
@@ -110,7 +139,7 @@ struct Server::Own {
   Place place;
   Behind behind;
   bool loopback;
-  int visits = 0;
+  std::list<Visit*> visits;  ///< the newest last
   int reported = 0;
   asio::io_context context{1};
   tcp::acceptor acceptor;
@@ -138,6 +167,9 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
     socket_.read_message_max(kLongestRequest);
     socket_.auto_fragment(false);
     socket_.write_buffer_bytes(1 << 16);
+    socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+      response.set(http::field::server, "");
+    }));  // else Beast tells its own
     socket_.async_accept(request, [self = shared_from_this()](Error error) {
       if (error) return;
       if (self->own_.pages.size() >= kMostPages) {
@@ -240,18 +272,27 @@ class Server::Own::Page : public std::enable_shared_from_this<Page> {
 /// Somebody who asks for the page, or to look on.
 class Server::Own::Visit : public std::enable_shared_from_this<Visit> {
  public:
-  Visit(Own& own, tcp::socket socket) : own_(own), stream_(std::move(socket)) { ++own_.visits; }
-  ~Visit() { --own_.visits; }
+  Visit(Own& own, tcp::socket socket)
+      : own_(own), stream_(std::move(socket)), place_(own_.visits.insert(own_.visits.end(), this)) {}
+  ~Visit() { own_.visits.erase(place_); }
 
   void read() {
     parser_.emplace();
-    parser_->header_limit(8 * 1024);
+    parser_->header_limit(kLongestHeader);
     parser_->body_limit(0);
     stream_.expires_after(kPatience);
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
-      if (!error) self->answer();
+      self->asks_ = false;
+      if (!error) return self->answer();
+      if (error == http::error::header_limit || error == http::error::buffer_overflow)
+        self->send(http::status::request_header_fields_too_large, "text/plain; charset=utf-8",
+                   "The request is too long. Delete the cookies of this host, and come again.\n");
     });
   }
+
+  /// Whether its request has not come yet.
+  bool asks() const { return asks_; }
+  void close() { stream_.close(); }
 
  private:
   void answer() {
@@ -263,7 +304,7 @@ class Server::Own::Visit : public std::enable_shared_from_this<Visit> {
     if (!refusal.empty()) {
       own_.report(refusal);
       return send(http::status::forbidden, "text/plain; charset=utf-8",
-                  refusal + "\nOpen the address that `sinew view` printed.\n");
+                  refusal + "\nOpen the address that `sinew view` printed, and allow its cookie.\n");
     }
     if (live && path == "/live") {
       stream_.expires_never();
@@ -272,19 +313,27 @@ class Server::Own::Visit : public std::enable_shared_from_this<Visit> {
     }
     if (request.method() != http::verb::get || path != "/")
       return send(http::status::not_found, "text/plain; charset=utf-8", "There is nothing here.\n");
+    if (own_.opens_window(request))
+      return send(http::status::see_other, "text/plain; charset=utf-8", "",
+                  cookie_name(text_of(request[http::field::host])));
     send(http::status::ok, "text/html; charset=utf-8", own_.behind.page);
   }
 
-  void send(http::status status, const char* type, const std::string& text) {
+  /// With a cookie's name the token goes along, and the page's address without it.
+  void send(http::status status, const char* type, const std::string& text, const std::string& cookie = "") {
     auto response = std::make_shared<http::response<http::string_body>>(status, 11);
-    response->set(http::field::server, "sinew");
     response->set(http::field::content_type, type);
     response->set(http::field::cache_control, "no-store");
     response->set("Referrer-Policy", "no-referrer");
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Content-Security-Policy",
                   "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
-                  "media-src blob:; connect-src 'self'; base-uri 'none'; form-action 'none'");
+                  "media-src blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors " +
+                      own_.place.frame_ancestors);
+    if (!cookie.empty()) {
+      response->set(http::field::location, "/");
+      response->set(http::field::set_cookie, cookie + "=" + own_.place.token + "; Path=/; HttpOnly; SameSite=Lax");
+    }
     response->keep_alive(false);
     response->body() = text;
     response->prepare_payload();
@@ -297,8 +346,10 @@ class Server::Own::Visit : public std::enable_shared_from_this<Visit> {
 
   Own& own_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{16 * 1024};
+  beast::flat_buffer buffer_{kLongestHeader + 1024};
   std::optional<http::request_parser<http::empty_body>> parser_;
+  std::list<Visit*>::iterator place_;
+  bool asks_ = true;
 };
 
 std::string Server::Own::refusal(const HttpRequest& request, bool live) const {
@@ -311,9 +362,24 @@ std::string Server::Own::refusal(const HttpRequest& request, bool live) const {
   if (live && !origin.empty() && origin != "http://" + std::string(authority) &&
       origin != "https://" + std::string(authority))
     return fmt::format("refused: a page of {} wants to look on", io::show(std::string(origin)));
-  if (!same(token_of(text_of(request.target())), place.token))
-    return "refused: the token is missing, or not the one of this run";
+  if (!knows_token(request)) return "refused: the token is missing, or not the one of this run";
   return "";
+}
+
+bool Server::Own::knows_token(const HttpRequest& request) const {
+  if (const auto told = token_of(text_of(request.target()))) return same(*told, place.token);
+  return has_cookie(text_of(request[http::field::cookie]), cookie_name(text_of(request[http::field::host])),
+                    place.token);
+}
+
+bool Server::Own::opens_window(const HttpRequest& request) const {
+  if (!token_of(text_of(request.target()))) return false;
+  const std::string_view destination = text_of(request["Sec-Fetch-Dest"]);
+  if (!destination.empty()) return destination == "document";
+  // Browsers tell no destination to addresses that they do not trust, as those of a network. A frame that is allowed
+  // may then be one.
+  const bool browser = text_of(request[http::field::accept]).find("text/html") != std::string_view::npos;
+  return browser && place.frame_ancestors == "'none'";
 }
 
 void Server::Own::accept() {
@@ -326,7 +392,11 @@ void Server::Own::accept() {
       });
     }
     accept();
-    if (visits >= 4 * kMostPages) return;
+    if (visits.size() >= kMostVisits) {  // who is slow to ask makes room
+      const auto slow = std::find_if(visits.begin(), visits.end(), [](const Visit* visit) { return visit->asks(); });
+      if (slow == visits.end()) return;
+      (*slow)->close();
+    }
     Error ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     std::make_shared<Visit>(*this, std::move(socket))->read();

@@ -13,10 +13,15 @@ namespace sinew::live {
 /// Who may come: those who know the token, from pages of this very address. Hosts other than this machine's own name
 /// (localhost, 127.0.0.1, [::1]) and `address` are refused, so that no other site's name can stand for it; numeric
 /// ones, which no name server can point elsewhere, are let in where `address` is not of the loopback.
+///
+/// Who opens `/?token=...` in a browser is sent on to `/` with the token as a cookie, so that neither the address bar
+/// nor the history keeps it. In a frame of another page, where browsers send no cookies, it stays in the address.
 struct Place {
   std::string address = "127.0.0.1";  ///< numeric; of one of this machine's interfaces
   int port = 0;                       ///< 0: any that is free
-  std::string token;                  ///< not empty
+  std::string token;                  ///< not empty; letters and digits
+  /// Who may show the page in a frame of theirs, as `frame-ancestors` of Content-Security-Policy (W3C CSP 3, 6.4.2).
+  std::string frame_ancestors = "'none'";
 };
 
 /// What is behind the page. Called on the server's thread.

@@ -18,6 +18,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+constexpr std::size_t kMostListed = 1000;  ///< elements in a report
+
 Json contact_json(const ContactReport& contact) {
   return {{"most_contacts", contact.contacts},
           {"deepest_penetration_m", contact.penetration},
@@ -107,6 +109,28 @@ Json end_json(const RecordedRun& run) {
   return end;
 }
 
+/// Of each solid in a state the least det F of all quadrature points, its cell, and the cells that are flat or inside
+/// out.
+Json volumes_json(const Model& model, const State& state) {
+  Json all = Json::object();
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const solid::Body& body = model.solids[i].body;
+    double least = INFINITY;
+    int where = 0;
+    Json inverted = Json::array();
+    for (int cell = 0; cell < body.elements(); ++cell) {
+      const double ratio = solid::cell_means(body, cell, state.solids[i].x).least_volume_ratio;
+      if (!(ratio > 0.0) && inverted.size() < kMostListed) inverted.push_back(cell);
+      if (ratio < least) {
+        least = ratio;
+        where = cell;
+      }
+    }
+    all[model.solids[i].name] = {{"least_volume_ratio", least}, {"in_cell", where}, {"inverted_elements", inverted}};
+  }
+  return all;
+}
+
 Json summary_json(const RecordedRun& run) {
   const Model& model = run.loaded.model;
   const Digest& all = run.digest;
@@ -119,16 +143,17 @@ Json summary_json(const RecordedRun& run) {
     violation = std::max(violation, row.violation);
     newton = std::max(newton, row.newton);
   }
-  const double gap = all.rows.empty() ? 0.0 : dropped_gap(model, unpack(model, all.last.state));
+  const State end = all.rows.empty() ? initial_state(model) : unpack(model, all.last.state);
   Json summary = {{"steps", counts},
                   {"largest_newton", newton},
                   {"largest_residual", residual},
                   {"largest_violation_m", violation},
-                  {"gap_at_dropped_points_m", gap}};
+                  {"gap_at_dropped_points_m", dropped_gap(model, end)}};
   const Analysis analysis = model.scene.analysis;
   if (analysis == Analysis::statics) summary["limit_points"] = limit_points(all.rows, model.scene.time.duration);
   summary["steps_with_rotated_tangent"] = all.rotated;
   summary["most_inverted_elements"] = all.most_inverted;
+  if (!model.solids.empty() && analysis != Analysis::modal) summary["solids_at_end"] = volumes_json(model, end);
   summary["steps_with_repeated_rows"] = all.redundant;
   summary["parts_of_halved_steps"] = all.halved;
   summary["steps_balanced_to_rounding"] = all.floors;

@@ -289,8 +289,9 @@ void assess(const StepContext& context, const Linearization& here, const State& 
     warnings.add(
         {.code = "elements_inverted",
          .where = "solids",
-         .message = std::to_string(folded) + " elements are flat or inside out: this is no state of a real body",
-         .remedy = "look at volume_ratio in ParaView; load it less or slower, or give a finer mesh or another law",
+         .message = describe_folded(model, next) + ": this is no state of a real body",
+         .remedy =
+             "look at least_volume_ratio in ParaView; load it less or slower, or give a finer mesh or another law",
          .value = static_cast<double>(folded),
          .limit = 0.0});
   }

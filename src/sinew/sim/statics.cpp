@@ -289,18 +289,22 @@ bool find_tangent(const ContextAt& at, Memory& memory, const Iterate& from, Step
   return solve();
 }
 
-/// What nothing resists at a state under all that is prescribed, which says what is small.
+/// What nothing resists at a state under all that is prescribed, which says what is small; or, where weights and pulls
+/// alone resist, before it is there.
 std::vector<Unresisted> find_unresisted(Memory& memory, const Ramp& ramp, const State& state) {
-  along(ramp, state)(1.0, memory.context);
   Linearization& here = memory.here;
-  here.forget();
-  StageTimes times;
-  here.evaluate(memory.context, state, times);
-  std::string failed;
-  if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) return {};
-  here.solve(memory.increment);
-  here.unstable();
-  return unresisted_motions(memory.context.model, here.unresisted());
+  for (const double t : {1.0, 0.0}) {
+    along(ramp, state)(t, memory.context);
+    here.forget();
+    StageTimes times;
+    std::string failed;
+    here.evaluate(memory.context, state, times);
+    if (!here.finite() || !here.factor(solid::Tangent::exact, Linearization::Wanted::any, failed)) continue;
+    here.solve(memory.increment);
+    here.unstable();
+    if (!here.unresisted().empty()) return unresisted_motions(memory.context.model, here.unresisted());
+  }
+  return {};
 }
 
 /// Names it in the report of a step that failed for it.
@@ -545,6 +549,25 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
   return {std::move(end.at.state), end.report};
 }
 
+namespace {
+
+/// Where loads push along motions that nothing resists at the start of a path, whose tangent is Memory::change.
+void leave_start(const Model& model, Memory& memory, const Ramp& ramp, FirstSolve& first) {
+  constexpr double kFar = 1e8;  // times the scene's size, which the whole loads would move it by this tangent
+  const Eigen::VectorXd moved = measured(model, memory.change).tail(memory.change.reduced.dz.size()).cwiseAbs();
+  if (moved.size() == 0 || moved.maxCoeff() < kFar) return;
+  Reached way{{initial_state(model), 0.0}, first.report};
+  for (int i = 0; i < 3 && way.at.t < 1.0 / kFar && accepted(way.report.status); ++i)
+    way = path_step(model, memory, ramp, way.at);
+  first.report = way.report;
+  std::vector<int> unknowns;
+  for (int k = 0; k < moved.size(); ++k)
+    if (moved[k] > 1e-3 * moved.maxCoeff()) unknowns.push_back(k);
+  if (way.report.status == Status::singular) first.free = unresisted_motions(model, unknowns);
+}
+
+}  // namespace
+
 FirstSolve first_solve(const Model& model, Workspace& workspace) {
   Memory& memory = workspace.memory();
   const bool follows_path = model.scene.analysis == Analysis::statics;
@@ -566,10 +589,9 @@ FirstSolve first_solve(const Model& model, Workspace& workspace) {
     at(t, memory.context);
     if (!find_tangent(at, memory, guess, first.report)) first.report.status = Status::singular;
   }
+  if (follows_path && first.report.status != Status::singular) leave_start(model, memory, ramp, first);
   if (first.report.status != Status::singular) return first;
-  first.free = find_unresisted(memory, ramp, start);
-  // (A pendulum that starts level is one whose weight does nothing at first.)
-  if (!follows_path) first.report = equilibrium_step(model, workspace, ramp.to, start, time).report;
+  if (first.free.empty()) first.free = find_unresisted(memory, ramp, start);
   return first;
 }
 

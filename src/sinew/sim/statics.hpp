@@ -30,8 +30,8 @@ StepResult equilibrium_step(const Model& model, Workspace& workspace, const Comm
                             double time, int most = kMostOfEquilibrium);
 
 /// The first iterations of the first step of an analysis at rest (`quasi_static`, `static`, `modal`), by the code that
-/// makes it; where their equations cannot be solved, the whole step. Status `singular`: nothing resists a motion, and
-/// `free` has those that are known; any other status says nothing of the step.
+/// makes it. Status `singular`: nothing resists a motion there, and `free` has those that are known; any other status
+/// says nothing of the step.
 struct FirstSolve {
   StepReport report;
   std::vector<Unresisted> free;

@@ -129,12 +129,13 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
     const SolidModel& solid = model.solids[i];
     const Eigen::Matrix3Xd& x = state.solids[i].x;
     const int cells = solid.body.elements();
-    Eigen::VectorXd von_mises(cells), ratio(cells), material(cells);
+    Eigen::VectorXd von_mises(cells), ratio(cells), least(cells), material(cells);
     Eigen::MatrixXd stress(6, cells), strain(6, cells);
     for (int cell = 0; cell < cells; ++cell) {
       const solid::CellMeans means = solid::cell_means(solid.body, cell, x);
       von_mises[cell] = solid::von_mises(means.stress);
       ratio[cell] = means.volume_ratio;
+      least[cell] = means.least_volume_ratio;
       material[cell] = solid.body.material[static_cast<std::size_t>(cell)];
       stress.col(cell) = six(means.stress);
       strain.col(cell) = six(means.strain);
@@ -148,6 +149,7 @@ Snapshot snapshot(const Model& model, const State& state, const std::string& sta
                            {{"stress", stress},
                             {"strain", strain},
                             {"volume_ratio", ratio.transpose()},
+                            {"least_volume_ratio", least.transpose()},
                             {"material", material.transpose()}}});
   }
   for (std::size_t i = 0; i < model.rods.size(); ++i)

@@ -389,15 +389,16 @@ CellMeans cell_means(const Body& body, int cell, const Eigen::Matrix3Xd& x) {
   const NodeVectors own = body.at_nodes(cell, x);
   const ElementStress stress(body.of(cell).law, rest, own);
   Mat3 kirchhoff = Mat3::Zero(), strain = Mat3::Zero();
-  double before = 0.0, now = 0.0;
+  double before = 0.0, now = 0.0, least = INFINITY;
   for (std::size_t q = 0; q < rest.volumes.size(); ++q) {
     const Mat3 F = deformation_gradient(rest, q, own);
+    least = std::min(least, F.determinant());
     kirchhoff += rest.volumes[q] * stress(F) * F.transpose();
     strain += rest.volumes[q] * green_strain(F);
     before += rest.volumes[q];
     now += rest.volumes[q] * F.determinant();
   }
-  return {now > 0.0 ? symmetric(kirchhoff / now) : Mat3::Constant(NAN), strain / before, now / before};
+  return {now > 0.0 ? symmetric(kirchhoff / now) : Mat3::Constant(NAN), strain / before, now / before, least};
 }
 
 namespace {

@@ -145,6 +145,7 @@ struct CellMeans {
   Mat3 stress;                ///< Cauchy's [Pa], over the volume that the cell has now; NaN where that is not positive
   Mat3 strain;                ///< Green and Lagrange's, over the volume at rest
   double volume_ratio = 1.0;  ///< volume now over volume at rest
+  double least_volume_ratio = 1.0;  ///< of its quadrature points: not above 0 where it is flat or inside out
 };
 CellMeans cell_means(const Body& body, int cell, const Eigen::Matrix3Xd& x);
 
