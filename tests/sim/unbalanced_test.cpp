@@ -56,6 +56,19 @@ TEST(Unbalanced, NamesTheConstraintThatIsMissed) {
   EXPECT_EQ(left_of(scene, 0), "couplings.0: missed by 40 mm");
 }
 
+TEST(Unbalanced, NamesThePairWithMostContacts) {
+  Scene scene = test::on_floor(0.01, 0.1, 0.3);
+  scene.bodies.emplace_back("one", test::box_of(10 * mm, 0.1, Vec3(0, 0, 5 * mm)));
+  scene.bodies.emplace_back("two", test::box_of(10 * mm, 0.1, Vec3(0, 0, 20 * mm)));
+  const Model model = build(scene, {});
+  State state = initial_state(model);
+  EXPECT_EQ(too_many_contacts(model, state), "contacts are too much work");
+  for (const int pair : {0, 1, 1, 1, 2}) state.contacts.emplace_back().pair = pair;
+  EXPECT_EQ(too_many_contacts(model, state),
+            "5 contacts are too much work, 3 of them of " + name_of_pair(model, 1) +
+                "; give simpler shapes (`hull: true`), or begin where they do not overlap");
+}
+
 TEST(Unbalanced, NamesTheContactAndItsPlace) {
   Scene scene = test::on_floor(0.01, 0.1, 0.3);
   scene.gravity.setZero();

@@ -137,6 +137,11 @@ TEST(Checks, WhatNothingResistsAtRestIsNamed) {
         "bodies.ball.pose.translate=[-0.1, 0.07, -0.07]", "rods.arm.path=[[0.1, 0.07, -0.07], [-0.1, 0.07, -0.07]]"},
        "rods.arm (turn_z)"},
       {{"analysis=static", "couplings=[{tie: {rod: arm}}]", "bodies={}", "rods.arm.base=[turn_z]"}, ""},
+      // What hangs from a massless rod by a joint in its middle may turn: its modes there have frequency 0.
+      {{"analysis=modal", "modes=1", "rods.arm.path=[[0, 0, 0], [0, 0, -0.2]]", "rods.arm.material.density=0",
+        "gravity=[9.81, 0, 0]", "bodies.ball.pose.translate=[0, 0, -0.2]",
+        "couplings=[{tie: {rod: arm, body: ball, about: []}}]"},
+       ""},
   };
   for (const AtRest& trial : all) {
     const runs::LoadedScene loaded = load_fault("plain_rod", trial.changes);

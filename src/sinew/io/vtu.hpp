@@ -13,8 +13,8 @@
 namespace sinew::io {
 
 /// Text of an unstructured grid (.vtu) of a solid: its cells at their present place; point data `displacement` [m];
-/// cell data `von_mises` [Pa] and the snapshot's fields (`stress` [Pa], `strain`, `volume_ratio`, `least_volume_ratio`, `material`). Every
-/// number is written with all its bits (base64).
+/// cell data `von_mises` [Pa] and the snapshot's fields (`stress` [Pa], `strain`, `volume_ratio`, `least_volume_ratio`,
+/// `material`). Every number is written with all its bits (base64).
 std::string vtu_text(const SolidSnapshot& solid, double time);
 
 /// The same of a rod: one polyline; point data `abscissa` [m], `radius` [m], `tangent`, the strains `torsion`,

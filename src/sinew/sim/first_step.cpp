@@ -12,8 +12,7 @@ FirstSolve begin_run(const Model& model, Workspace& workspace) {
   // (A pendulum that starts level is one whose weight does nothing at first.)
   if (model.scene.analysis == Analysis::quasi_static && first.report.status == Status::singular)
     first.report = advance(model, workspace, start);
-  if (model.scene.analysis == Analysis::modal && first.report.status != Status::singular)
-    first.report = modal_step(model, workspace, start).report;  // there is but one solve
+  if (model.scene.analysis == Analysis::modal) first.report = modal_step(model, workspace, start).report;
   return first;
 }
 
