@@ -164,6 +164,7 @@ int main(int argc, char** argv) {
   view->add_option("--embed-in", viewed.embedders,
                    "Whose pages may show this one in a frame, as http://localhost:8888; no other page may")
       ->type_name("ORIGIN")
+      ->allow_extra_args(false)
       ->check([](const std::string& origin) {
         static const std::regex kOrigin("[a-z][a-z0-9+.-]*:(//(\\*\\.)?[A-Za-z0-9.-]+(:([0-9]+|\\*))?)?");
         return std::regex_match(origin, kOrigin)

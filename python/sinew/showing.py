@@ -149,12 +149,12 @@ def _notebook_origins() -> list[str]:
 
         facts = json.loads((Path(jupyter_runtime_dir()) / f"jpserver-{server}.json").read_text(encoding="utf-8"))
         address = urlsplit(str(facts["url"]))
-        port = address.port
+        name, port = address.hostname or "", address.port
     except (ImportError, OSError, ValueError, KeyError, TypeError):
         return local
-    if not re.fullmatch(r"[A-Za-z0-9.-]+", address.hostname or "") or address.scheme not in ("http", "https"):
+    if not re.fullmatch(r"[A-Za-z0-9.-]+", name) or address.scheme not in ("http", "https"):
         return local
-    hosts = {"localhost", "127.0.0.1", address.hostname}
+    hosts = {"localhost", "127.0.0.1", name}
     return [f"{address.scheme}://{host}:{port}" if port else f"{address.scheme}://{host}" for host in sorted(hosts)]
 
 
