@@ -200,6 +200,16 @@ TEST(Checks, TheTipIsWhereNothingIsSaid) {
 }
 
 /// Counts that take forever are refused, as others are.
+TEST(Checks, WhatNoStarHasIsRefused) {
+  for (const auto& [change, path] : {std::pair("gravity=[0, 1e300, 0]", "gravity"),
+                                     std::pair("rods.arm.material.density=1e300", "rods.arm.material.density"),
+                                     std::pair("bodies.ball.density=1e300", "bodies.ball.density")}) {
+    const InputFault fault = fault_in("plain_rod", {change});
+    EXPECT_EQ(fault.path, path);
+    EXPECT_EQ(fault.rule, "is more than that of a neutron star");
+  }
+}
+
 TEST(Checks, ATendonWindsAtMostAThousandTimes) {
   const std::string tendon = "actuators={helix: {rod: arm, tendon: {distance: 2 mm, angle: [0, ";
   EXPECT_THAT(fault_in("plain_rod", {tendon + "1e15]}, tension: 1 N}}"}).rule, HasSubstr("at most 1000 times"));

@@ -1,5 +1,5 @@
 // Numbers that no real material or scene has, most likely because a unit was forgotten. They are warned of, not
-// refused: a model of something unreal is legal.
+// refused: a model of something unreal is legal. What no star has is refused: energies would not be finite.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,6 +16,8 @@ constexpr double kSoftestGel = 50.0, kSoftest = 1e3, kStiffest = 1.3e12;  // [Pa
 constexpr double kLightest = 5.0, kHeaviest = 23e3;  // [kg/m^3]
 /// Four times that of Jupiter.
 constexpr double kMostGravity = 100.0;  // [m/s^2]
+/// Neutron stars have up to some 1e18 kg/m^3 and 1e13 m/s^2.
+constexpr double kBeyondDensity = 1e19, kBeyondGravity = 1e14;  // [kg/m^3], [m/s^2]
 
 /// 0 is none, of a section whose stiffness is given.
 void check_modulus(Model& model, double young, const std::string& path) {
@@ -35,6 +37,9 @@ void check_modulus(Model& model, double young, const std::string& path) {
 
 /// Of a density that is given; 0 is massless. (A mass may stand for more than a body.)
 void check_density(Model& model, double density, const std::string& path) {
+  if (density > kBeyondDensity)
+    reject(path + (path.starts_with("rods.") ? ".material.density" : ".density"), text(density) + " kg/m^3",
+           "is more than that of a neutron star", "check the number and its unit");
   if (density <= 0.0 || (density >= kLightest && density <= kHeaviest)) return;
   const bool light = density < kLightest;
   model.warnings.push_back({.code = "unit_of_density",
@@ -49,6 +54,8 @@ void check_density(Model& model, double density, const std::string& path) {
 
 void check_gravity(Model& model) {
   const double gravity = model.scene.gravity.norm();
+  if (!(gravity < kBeyondGravity))
+    reject("gravity", text(gravity) + " m/s^2", "is more than that of a neutron star", "check its numbers and units");
   if (gravity <= kMostGravity) return;
   model.warnings.push_back({.code = "unit_of_gravity",
                             .where = "gravity",
