@@ -46,7 +46,8 @@ TEST(Checks, UnitsOfRodsAndBodies) {
 TEST(Checks, UnitsOfSolids) {
   expect_told("examples/finger.yaml", {{"solids.finger.density=1.07", "unit_of_density", "solids.finger"},
                                        {"solids.finger.density=1070 g/cm^3", "unit_of_density", "solids.finger"},
-                                       {"solids.finger.material.young=0.6 kPa", "unit_of_modulus", "solids.finger"}});
+                                       {"solids.finger.material.young=0.6 kPa", "unit_of_modulus", "solids.finger"},
+                                       {"solids.finger.material.young=1e-300", "unit_of_modulus", "solids.finger"}});
 }
 
 /// Real, and at the limits of what there is.
@@ -208,6 +209,9 @@ TEST(Checks, WhatNoStarHasIsRefused) {
     EXPECT_EQ(fault.path, path);
     EXPECT_EQ(fault.rule, "is more than that of a neutron star");
   }
+  const InputFault stiff = fault_in("plain_rod", {"rods.arm.material.young=1e300"});
+  EXPECT_EQ(stiff.path, "rods.arm.material");
+  EXPECT_EQ(stiff.rule, "is more than Young's modulus of a neutron star");
 }
 
 TEST(Checks, ATendonWindsAtMostAThousandTimes) {

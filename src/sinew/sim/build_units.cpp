@@ -16,11 +16,14 @@ constexpr double kSoftestGel = 50.0, kSoftest = 1e3, kStiffest = 1.3e12;  // [Pa
 constexpr double kLightest = 5.0, kHeaviest = 23e3;  // [kg/m^3]
 /// Four times that of Jupiter.
 constexpr double kMostGravity = 100.0;  // [m/s^2]
-/// Neutron stars have up to some 1e18 kg/m^3 and 1e13 m/s^2.
-constexpr double kBeyondDensity = 1e19, kBeyondGravity = 1e14;  // [kg/m^3], [m/s^2]
+/// Neutron stars have up to some 1e18 kg/m^3, 1e35 Pa and 1e13 m/s^2.
+constexpr double kBeyondDensity = 1e19, kBeyondModulus = 1e36, kBeyondGravity = 1e14;  // [kg/m^3], [Pa], [m/s^2]
 
 /// 0 is none, of a section whose stiffness is given.
 void check_modulus(Model& model, double young, const std::string& path) {
+  if (young > kBeyondModulus)
+    reject(path + ".material", text(young) + " Pa", "is more than Young's modulus of a neutron star",
+           "check the moduli and their units");
   if (young <= 0.0 || (young >= kSoftest && young <= kStiffest)) return;
   const bool soft = young < kSoftest;
   model.warnings.push_back({.code = "unit_of_modulus",

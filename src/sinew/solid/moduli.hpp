@@ -29,7 +29,7 @@ constexpr double bulk_modulus(double shear, const Compressibility& given) {
 }
 
 constexpr double young(const Lame& moduli) {
-  return moduli.mu * (3.0 * moduli.lambda + 2.0 * moduli.mu) / (moduli.lambda + moduli.mu);
+  return moduli.mu * (2.0 + moduli.lambda / (moduli.lambda + moduli.mu));  // squares neither overflow nor vanish
 }
 constexpr double bulk_modulus(const Lame& moduli) { return moduli.lambda + 2.0 / 3.0 * moduli.mu; }
 constexpr Lame lame_from_bulk(double shear, double bulk) { return {shear, bulk - 2.0 / 3.0 * shear}; }
