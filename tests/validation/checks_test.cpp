@@ -80,7 +80,8 @@ TEST(Checks, ThePieceThatNothingHoldsIsNamed) {
   const InputFault fault = fault_in("pieces_touching");
   EXPECT_EQ(fault.path, "solids.a.fixed");
   EXPECT_THAT(fault.rule, HasSubstr("its piece of 96 cells about"));
-  EXPECT_THAT(fault.rule, HasSubstr("is free to move and turn every way"));
+  EXPECT_THAT(fault.rule, HasSubstr("is free to move and turn every way; 9 nodes of the mesh are at the place"));
+  EXPECT_THAT(fault.remedy, HasSubstr("join the nodes"));
 }
 
 TEST(Checks, PiecesThatMeetAreToldInMotion) {

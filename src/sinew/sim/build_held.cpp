@@ -177,9 +177,15 @@ void check_held(Model& model, int number) {
                                          (free.coupled ? ", but for its couplings" : "")});
     return;
   }
+  const std::size_t same = solid::coincident_nodes(solid.body.rest, solid.body.cells).size();
   reject(path + ".fixed", std::to_string(solid.held()) + " coordinates",
-         (pieces.count == 1 ? "the body" : what) + " is free to " + motions,
-         "add a region to `fixed`, or `springs`, that hold it there");
+         (pieces.count == 1 ? "the body" : what) + " is free to " + motions +
+             (same > 0
+                  ? "; " + std::to_string(same) + " nodes of the mesh are at the place of another and not joined to it"
+                  : ""),
+         same > 0 ? "join the nodes at the same place in the program that writes the mesh, or hold it by a region of "
+                    "`fixed`, or `springs`"
+                  : "add a region to `fixed`, or `springs`, that hold it there");
 }
 
 }  // namespace sinew::building
